@@ -1,0 +1,24 @@
+"""Train-Robots releases in the public format: commands, scenes, and the demos that a pair of layouts implies.
+
+A release is a directory with `commands.txt` and `configuration.txt`. The tree annotations beside them are for scoring
+and are read in `learning.evaluation` alone.
+"""
+
+from learning.train_robots.key_frames import KeyFrames, implied_key_frames
+from learning.train_robots.layout import Block, Cell, Layout
+from learning.train_robots.release import Command, Release
+from learning.train_robots.scene import Scene, ShownMove
+from learning.train_robots.scene_spec import scene_spec
+
+__all__ = [
+    "Block",
+    "Cell",
+    "Command",
+    "KeyFrames",
+    "Layout",
+    "Release",
+    "Scene",
+    "ShownMove",
+    "implied_key_frames",
+    "scene_spec",
+]
