@@ -9,6 +9,7 @@ from learning.train_robots.layout import Block, Cell, Layout
 from learning.train_robots.release import Command, Release
 from learning.train_robots.scene import Scene, ShownMove
 from learning.train_robots.scene_spec import scene_spec
+from learning.train_robots.synthetic import write_synthetic_release
 
 __all__ = [
     "Block",
@@ -21,4 +22,5 @@ __all__ = [
     "ShownMove",
     "implied_key_frames",
     "scene_spec",
+    "write_synthetic_release",
 ]
