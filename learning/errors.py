@@ -13,3 +13,7 @@ class ReleaseError(LearningError, ValueError):
 
 class KnowledgeError(LearningError, ValueError):
     """A knowledge file cannot be read; the message names file and field."""
+
+
+class PerceptionError(LearningError, ValueError):
+    """What a demo or world shows cannot be perceived: nothing moved, or a colour or shape without a known look."""

@@ -1,0 +1,79 @@
+"""All concepts learned so far: a mixture for every feature space, and the action graphlets (thesis 3.4)."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.concepts.demo_concepts import DemoConcepts
+from learning.concepts.feature_space import FEATURE_SPACES
+from learning.concepts.incremental_mixture import IncrementalMixture
+from learning.errors import KnowledgeError
+from learning.graphs.action_library import ActionLibrary
+from robots.pose import FloatArray
+
+
+class ConceptSpaces:
+    """The incremental mixtures of all feature spaces, and the list of action graphlets.
+
+    Attributes:
+        mixtures: Feature space name to its mixture.
+        actions: Known action graphlets.
+    """
+
+    def __init__(self) -> None:
+        self.mixtures: dict[str, IncrementalMixture] = {
+            name: IncrementalMixture(space) for name, space in FEATURE_SPACES.items()
+        }
+        self.actions = ActionLibrary()
+
+    @property
+    def touching(self) -> int:
+        """Number of the *at it* concept: the distance concept with the smallest mean."""
+        components = self.mixtures["distance"].components
+        return min(components, key=lambda number: float(components[number].mean[0]))
+
+    def update(self, demo: DemoConcepts) -> None:
+        """Merge the concepts of one demo, each feature space independently of the others (3.4.1)."""
+        for name, components in demo.components.items():
+            self.mixtures[name].update(components)
+
+    def predicates(self, space: str, values: FloatArray) -> NDArray[np.int64]:
+        """Number of the concept that holds for each measured value: smallest Mahalanobis distance (eq. 3.1).
+
+        Args:
+            space: Feature space name.
+            values: Measured values (for relations: offsets [m]), (..., m).
+
+        Returns:
+            (...) concept numbers.
+        """
+        return self.mixtures[space].classify(FEATURE_SPACES[space].embed(values))
+
+    def resolve(self, space: str, number: int) -> int:
+        """The number that a concept is known by now (see `IncrementalMixture.resolve`); actions keep theirs."""
+        return number if space == "action" else self.mixtures[space].resolve(number)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain numbers, lists and strings; `from_json` gives the same concepts back exactly."""
+        return {
+            "spaces": {name: mixture.to_json() for name, mixture in self.mixtures.items()},
+            "actions": self.actions.to_json(),
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> "ConceptSpaces":
+        """Rebuild the concepts.
+
+        Raises:
+            KnowledgeError: `data` is not what `to_json` wrote.
+        """
+        spaces = cls()
+        try:
+            for name, space in FEATURE_SPACES.items():
+                spaces.mixtures[name] = IncrementalMixture.from_json(space, data["spaces"][name])
+            spaces.actions = ActionLibrary.from_json(data["actions"])
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise KnowledgeError(f"concepts: {type(error).__name__} {error}; learn again or restore the file") from None
+        return spaces

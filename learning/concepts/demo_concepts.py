@@ -1,0 +1,104 @@
+"""All that concept learning takes from one demo: its own mixture in every feature space."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.concepts.demo_mixture import fit_mixture
+from learning.concepts.feature_space import FEATURE_SPACES, NEAR
+from learning.concepts.gaussian import Gaussian
+from learning.errors import PerceptionError
+from learning.perception.observation import Observation
+from learning.perception.tracks import at_rest, moved_object
+from robots.pose import FloatArray
+
+FRAMES = 8
+"""Frames of a demo whose values are clustered, spread evenly: what rests looks the same in all the others."""
+MOST_POINTS = 400
+"""Values of a space that are clustered at most, drawn at random, so that a crowded scene takes no longer."""
+
+Values = tuple[FloatArray, NDArray[np.int64]]
+
+
+@dataclass(frozen=True, slots=True)
+class DemoConcepts:
+    """The mixtures of one demo, before they are merged with what is known.
+
+    Attributes:
+        components: Feature space name to the components found in the demo.
+    """
+
+    components: Mapping[str, tuple[Gaussian, ...]]
+
+
+def fit_demo(observation: Observation, rng: np.random.Generator) -> DemoConcepts:
+    """Cluster the feature values of one demo in every feature space (thesis 3.3, GMM with BIC).
+
+    A pure function of its arguments, so that its result can be kept and merged into several `ConceptSpaces`.
+
+    Args:
+        observation: The demo's tracks.
+        rng: Draws the values when there are more than `MOST_POINTS`.
+    """
+    values = feature_values(observation)
+    components = {}
+    for name, (points, tracks) in values.items():
+        if len(points) > MOST_POINTS:
+            chosen = np.sort(rng.choice(len(points), MOST_POINTS, replace=False))
+            points, tracks = points[chosen], tracks[chosen]
+        components[name] = fit_mixture(points, tracks, FEATURE_SPACES[name])
+    return DemoConcepts(components)
+
+
+def feature_values(observation: Observation) -> dict[str, Values]:
+    """Embedded values to cluster and the track of each, by feature space.
+
+    Properties and relations are those of objects at rest: a place is where something rests, and what a carried object
+    flies past is no relation. Distance holds near pairs of objects, and the gripper with the object it manipulates.
+    """
+    frames = np.unique(np.linspace(0, len(observation.times) - 1, FRAMES).round().astype(int))
+    rest = at_rest(observation)[frames]
+    frame, obj = np.nonzero(rest)
+    picked = frames[frame]
+    measured = {
+        "colour": observation.colour[picked, obj],
+        "shape": observation.shape[picked, obj],
+        "location": observation.location[picked, obj],
+    }
+    values = {name: (FEATURE_SPACES[name].embed(value), obj) for name, value in measured.items()}
+
+    location = observation.location[frames]
+    offset = location[:, :, None] - location[:, None]  # [f, i, j]: i as seen from j
+    near = np.linalg.norm(offset, axis=3) < NEAR
+    near &= rest[:, :, None] & rest[:, None, :] & ~np.eye(len(observation.object_ids), dtype=bool)
+    which, i, j = np.nonzero(near)
+    pair = i * len(observation.object_ids) + j
+    offsets = offset[which, i, j]
+    values["direction"] = FEATURE_SPACES["direction"].embed(offsets), pair
+    upper = i < j  # distance has no sense of direction: each pair once
+    gripper, gripper_track = _gripper_offsets(observation)
+    distance = FEATURE_SPACES["distance"].embed(np.concatenate([offsets[upper], gripper]))
+    values["distance"] = distance, np.concatenate([pair[upper], gripper_track])
+    return values
+
+
+def _gripper_offsets(observation: Observation) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Offsets of the manipulated object from the gripper, (n, 3) [m], and a track number for each, (n,).
+
+    Taken while the gripper is closed, and at both ends of the demo; on the way there it passes through all distances.
+    """
+    try:
+        moved = moved_object(observation)
+    except PerceptionError:  # a scene in which nothing happens still teaches what things look like
+        return np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
+    offset = observation.location[:, moved] - observation.gripper_location
+    last = len(observation.times) - 1
+    held = np.flatnonzero(observation.gripper_closed)
+    held = held[np.unique(np.linspace(0, len(held) - 1, FRAMES).round().astype(int))] if len(held) else held
+    ends = np.unique([0, min(1, last), max(0, last - 1), last])
+    chosen = np.unique(np.concatenate([held, ends]))
+    # A track that is near and far in turn is no mode of its own: number the near and the far part apart.
+    far = np.linalg.norm(offset[chosen], axis=1) > NEAR
+    return offset[chosen], np.where(observation.gripper_closed[chosen], -1, -2) - 2 * far

@@ -1,0 +1,134 @@
+"""The Gaussian mixture of one demo in one feature space, its number of components chosen by BIC (thesis 3.3)."""
+
+import warnings
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.cluster.hierarchy import fcluster, linkage
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.mixture import GaussianMixture
+
+from learning.concepts.feature_space import FeatureSpace
+from learning.concepts.gaussian import Gaussian
+from robots.pose import FloatArray
+
+MAX_ITERATIONS = 20
+TOLERANCE = 1e-2
+"""EM stops when the mean log likelihood rises by less: BIC moves by n times that, its penalty by some dozens."""
+
+
+def fit_mixture(points: FloatArray, tracks: NDArray[np.int64], space: type[FeatureSpace]) -> tuple[Gaussian, ...]:
+    """Fit a mixture to the embedded values of one demo.
+
+    Values of one track (an object, or a pair of objects, at rest) are the same thing seen again and again. The search
+    starts from the well separated modes of the tracks' means, and then merges the two closest components, or splits
+    the widest, as long as BIC falls. The result depends on the arguments alone.
+
+    Args:
+        points: Embedded values, (n, d).
+        tracks: Which track each value belongs to, (n,).
+        space: The feature space, with its scales.
+
+    Returns:
+        The components, by descending number of values; empty for no points.
+    """
+    if len(points) == 0:
+        return ()
+    best = _fit(points, _modes(points, tracks, space), space)
+    for change in (_merge_closest, _split_widest):
+        while (labels := change(points, best[1], space)) is not None:
+            candidate = _fit(points, labels, space)
+            if candidate[0] >= best[0]:
+                break
+            best = candidate
+    components = [_component(points[best[1] == label], space) for label in np.unique(best[1])]
+    return tuple(sorted(components, key=lambda component: -component.count))
+
+
+def _modes(points: FloatArray, tracks: NDArray[np.int64], space: type[FeatureSpace]) -> NDArray[np.int64]:
+    """Label points by average-linkage clustering of the tracks' means, cut at the space's resolution, (n,)."""
+    _, track_of_point = np.unique(tracks, return_inverse=True)
+    sizes = np.bincount(track_of_point)
+    sums = np.zeros((len(sizes), points.shape[1]))
+    np.add.at(sums, track_of_point, points)
+    means = sums / sizes[:, None]
+    if len(means) == 1:
+        return np.zeros(len(points), dtype=np.int64)
+    labels = fcluster(linkage(means, "average"), space.resolution, "distance")
+    return np.asarray(labels[track_of_point], dtype=np.int64)
+
+
+def _component(points: FloatArray, space: type[FeatureSpace]) -> Gaussian:
+    """Mean and covariance (with the floor) of the values that a component holds: D_k of appendix A."""
+    mean = points.mean(axis=0)
+    centred = points - mean
+    covariance = centred.T @ centred / len(points)
+    if space.diagonal:
+        covariance = np.diag(np.diag(covariance))
+    return Gaussian(mean, covariance + space.floor**2 * np.eye(space.dimension), float(len(points)))
+
+
+def _fit(points: FloatArray, labels: NDArray[np.int64], space: type[FeatureSpace]) -> tuple[float, NDArray[np.int64]]:
+    """Run EM from a labelling; return BIC and the most likely component of each point, (n,)."""
+    start = [_component(points[labels == label], space) for label in np.unique(labels)]
+    if len(start) > len(points) or (len(start) == 1 and len(points) == 1):
+        return np.inf, labels
+    if space.diagonal:
+        precisions = np.array([1.0 / np.diag(component.covariance) for component in start])
+    else:
+        precisions = np.linalg.inv(np.array([component.covariance for component in start]))
+    model = GaussianMixture(
+        len(start),
+        covariance_type="diag" if space.diagonal else "full",
+        reg_covar=space.floor**2,
+        max_iter=MAX_ITERATIONS,
+        tol=TOLERANCE,
+        weights_init=np.array([component.count for component in start]) / len(points),
+        means_init=np.array([component.mean for component in start]),
+        precisions_init=precisions,
+        random_state=0,
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        assigned = model.fit_predict(points)
+    return float(model.bic(points)), np.asarray(assigned, dtype=np.int64)
+
+
+def _merge_closest(
+    points: FloatArray, labels: NDArray[np.int64], space: type[FeatureSpace]
+) -> NDArray[np.int64] | None:
+    """Labels with the two components of smallest mutual Mahalanobis distance made one; None when there is one."""
+    names = np.unique(labels)
+    if len(names) < 2:
+        return None
+    components = [_component(points[labels == name], space) for name in names]
+    means = np.array([component.mean for component in components])
+    covariances = np.array([component.covariance for component in components])
+    difference = means[:, None] - means[None]
+    pooled = 0.5 * (covariances[:, None] + covariances[None])
+    squared = np.einsum("abi,abi->ab", difference, np.linalg.solve(pooled, difference[..., None])[..., 0])
+    np.fill_diagonal(squared, np.inf)
+    first, second = np.unravel_index(int(np.argmin(squared)), squared.shape)
+    result = labels.copy()
+    result[labels == names[second]] = names[first]
+    return result
+
+
+def _split_widest(points: FloatArray, labels: NDArray[np.int64], space: type[FeatureSpace]) -> NDArray[np.int64] | None:
+    """Labels with the component that stretches furthest cut across its main axis; None when none can be cut."""
+    names, counts = np.unique(labels, return_counts=True)
+    widest, axis = None, np.zeros(space.dimension)
+    largest = 2.0 * space.floor**2  # a component that is nearly all floor has nothing to split
+    for name, count in zip(names, counts, strict=True):
+        if count < 4:
+            continue
+        values, vectors = np.linalg.eigh(_component(points[labels == name], space).covariance)
+        if values[-1] > largest:
+            largest, widest, axis = values[-1], name, vectors[:, -1]
+    if widest is None:
+        return None
+    inside = labels == widest
+    side = (points[inside] - points[inside].mean(axis=0)) @ axis > 0.0
+    result = labels.copy()
+    result[np.flatnonzero(inside)[side]] = labels.max() + 1
+    return result

@@ -1,0 +1,136 @@
+"""The feature spaces in which concepts are found, one small class each (thesis 3.3.2 and 3.3.3).
+
+A class turns measured values into vectors in which near means alike (`embed`), and states the scales at which its
+space is looked at. A new space is added by writing such a class and naming it in `FEATURE_SPACES`.
+"""
+
+from typing import ClassVar
+
+import numpy as np
+
+from robots.pose import FloatArray
+
+NEAR = 0.0855
+"""Objects whose centres are closer than this relate to one another [m]: a bit more than twice the side of a block, so
+that a block relates to those in the cells around, above and below it, diagonals included."""
+FAR = 0.13
+"""What every distance beyond `NEAR` counts as [m]: perception tells near distances apart, and far is just far."""
+
+
+class FeatureSpace:
+    """What a feature space must say about itself.
+
+    Attributes:
+        name: Short name, as in the concept id `colour_3`.
+        dimension: Length d of an embedded value.
+        diagonal: Whether covariances are kept diagonal.
+        floor: Standard deviation below which differences mean nothing; its square is added to every variance.
+        resolution: Modes closer than this start out as one in the search for the number of components.
+        correlation: Share of a value's variance that all values of one demo have in common (intraclass correlation):
+            light, placement and viewpoint stay the same within a demo, so its values are not independent draws.
+    """
+
+    name: ClassVar[str]
+    dimension: ClassVar[int]
+    diagonal: ClassVar[bool] = False
+    floor: ClassVar[float]
+    resolution: ClassVar[float]
+    correlation: ClassVar[float]
+
+    @staticmethod
+    def embed(values: FloatArray) -> FloatArray:
+        """Embed measured values, (..., m) to (..., d)."""
+        return np.asarray(values, dtype=np.float64)
+
+
+class Colour(FeatureSpace):
+    """Hue, saturation and lightness, each 0..1.
+
+    Hue is an angle about the axis of greys: red does not break where hue wraps, and a grey has no hue.
+    """
+
+    name = "colour"
+    dimension = 3
+    floor = 0.05
+    resolution = 0.35
+    correlation = 0.3
+
+    @staticmethod
+    def embed(values: FloatArray) -> FloatArray:
+        """Embed H, S, L as (S cos 2 pi H, S sin 2 pi H, L)."""
+        hue, saturation, lightness = np.moveaxis(np.asarray(values, dtype=np.float64), -1, 0)
+        angle = 2.0 * np.pi * hue
+        return np.stack([saturation * np.cos(angle), saturation * np.sin(angle), lightness], axis=-1)
+
+
+class Shape(FeatureSpace):
+    """Fast point feature histogram of an object, 33 bins that sum to 1."""
+
+    name = "shape"
+    dimension = 33
+    diagonal = True
+    floor = 0.003
+    resolution = 0.05
+    correlation = 0.3
+
+
+class Location(FeatureSpace):
+    """Where an object is, projected onto the table: a place [m]. Height stays with the tracks."""
+
+    name = "location"
+    dimension = 2
+    floor = 0.008
+    resolution = 0.025
+    correlation = 0.5
+
+    @staticmethod
+    def embed(values: FloatArray) -> FloatArray:
+        """Keep x and y of (..., 3)."""
+        return np.asarray(values, dtype=np.float64)[..., :2]
+
+
+class Direction(FeatureSpace):
+    """Where one object is as seen from another: azimuth and altitude as a unit vector."""
+
+    name = "direction"
+    dimension = 3
+    floor = 0.08
+    resolution = 0.3
+    correlation = 0.3
+
+    @staticmethod
+    def embed(values: FloatArray) -> FloatArray:
+        """Embed offsets (..., 3) [m] as unit vectors; a zero offset has none and stays zero."""
+        offsets = np.asarray(values, dtype=np.float64)
+        length = np.linalg.norm(offsets, axis=-1, keepdims=True)
+        return np.asarray(np.divide(offsets, length, out=np.zeros_like(offsets), where=length > 0.0))
+
+    @staticmethod
+    def azimuth_altitude(offsets: FloatArray) -> FloatArray:
+        """The thesis's two angles [rad] of offsets (..., 3): azimuth from +x towards +y, altitude above the table."""
+        x, y, z = np.moveaxis(np.asarray(offsets, dtype=np.float64), -1, 0)
+        return np.stack([np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))], axis=-1)
+
+
+class Distance(FeatureSpace):
+    """Distance between two centres [m]; all that is beyond `NEAR` is the same far."""
+
+    name = "distance"
+    dimension = 1
+    floor = 0.008
+    resolution = 0.018
+    correlation = 0.3
+
+    @staticmethod
+    def embed(values: FloatArray) -> FloatArray:
+        """Embed offsets (..., 3) [m] as their length, `FAR` where it exceeds `NEAR`."""
+        length = np.linalg.norm(np.asarray(values, dtype=np.float64), axis=-1, keepdims=True)
+        return np.where(length > NEAR, FAR, length)
+
+
+FEATURE_SPACES: dict[str, type[FeatureSpace]] = {
+    space.name: space for space in (Colour, Shape, Location, Direction, Distance)
+}
+"""All feature spaces by name."""
+PROPERTIES = ("colour", "shape", "location")
+RELATIONS = ("direction", "distance")

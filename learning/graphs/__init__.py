@@ -1,0 +1,21 @@
+"""Graphs: a demo as a sequence of constant qualitative states, and the graphlets cut from it (thesis 3.3.4)."""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from learning.graphs.action_graphlet import ActionGraphlet, GraphletState
+from learning.graphs.action_library import ActionLibrary
+
+if TYPE_CHECKING:
+    from learning.graphs.action_states import action_graphlet
+
+__all__ = ["ActionGraphlet", "ActionLibrary", "GraphletState", "action_graphlet"]
+
+_HOMES = {"action_graphlet": "action_states"}
+
+
+def __getattr__(name: str) -> Any:
+    """Import on first use what needs heavier libraries."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -1,0 +1,118 @@
+"""Observations of the board: of a recorded demo, of key frames, and of a world that stands still."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from learning.perception.board_noise import BOARD_NOISE, FRAME_TIME, BoardNoise, TrueTracks, observed
+from learning.perception.observation import Observation
+from robots.pose import FloatArray
+from twin.scene_spec import ObjectSpec, SceneSpec
+from twin.state import WorldState
+
+if TYPE_CHECKING:
+    from teleop import Demo
+
+KEY_FRAME_LENGTH = 4
+"""Noisy frames that one key frame stands for: 0.4 s at 10 Hz."""
+WORLD_FRAMES = 10
+"""Noisy frames of a world that stands still: 1 s at 10 Hz."""
+
+
+@dataclass(frozen=True, slots=True)
+class KeyFrame:
+    """A moment of an action at which everything stands still.
+
+    Attributes:
+        gripper_location: Tool frame in the world, (3,) [m].
+        gripper_closed: Gripper state.
+        object_location: Object centres in the world, (N, 3) [m].
+    """
+
+    gripper_location: FloatArray
+    gripper_closed: bool
+    object_location: FloatArray
+
+
+def observe_key_frames(
+    frames: Sequence[KeyFrame],
+    objects: Sequence[ObjectSpec],
+    rng: np.random.Generator,
+    noise: BoardNoise = BOARD_NOISE,
+) -> Observation:
+    """Observe a sequence of key frames, each for `KEY_FRAME_LENGTH` noisy frames.
+
+    Args:
+        frames: At least one key frame.
+        objects: The N objects, for their ids and looks (their `position` is not used).
+        rng: Source of the noise.
+        noise: Its standard deviations.
+
+    Raises:
+        ValueError: There are no key frames.
+        PerceptionError: A colour or shape has no known look.
+    """
+    if not frames:
+        raise ValueError("there are no key frames to observe: give at least one")
+    repeated = [frame for frame in frames for _ in range(KEY_FRAME_LENGTH)]
+    tracks = TrueTracks(
+        times=FRAME_TIME * np.arange(len(repeated)),
+        gripper_location=np.array([frame.gripper_location for frame in repeated], dtype=np.float64),
+        gripper_closed=np.array([frame.gripper_closed for frame in repeated], dtype=bool),
+        location=np.array([frame.object_location for frame in repeated], dtype=np.float64).reshape(
+            len(repeated), len(objects), 3
+        ),
+    )
+    return observed(tracks, objects, rng, noise)
+
+
+def observe_demo(demo: "Demo", rng: np.random.Generator, noise: BoardNoise = BOARD_NOISE) -> Observation:
+    """Observe a recorded demo of the board at about 10 Hz, through noise.
+
+    Args:
+        demo: The recording; its true poses are read, as the board is fully observed (design section 5).
+        rng: Source of the noise.
+        noise: Its standard deviations.
+
+    Raises:
+        PerceptionError: A colour or shape has no known look.
+    """
+    states = demo.states
+    times = np.asarray(demo.times, dtype=np.float64)
+    picked = np.searchsorted(times, np.arange(times[0], times[-1] + 1e-9, FRAME_TIME))
+    picked = np.unique(np.append(picked, len(times) - 1))
+    by_id = {thing.id: thing for thing in demo.scene.objects}
+    tracks = TrueTracks(
+        times=times[picked],
+        gripper_location=np.asarray(states.tool)[picked, :3],
+        gripper_closed=np.asarray(states.gripper_closed, dtype=bool)[picked],
+        location=np.asarray(states.object_positions)[picked],
+    )
+    return observed(tracks, [by_id[int(number)] for number in states.object_ids], rng, noise)
+
+
+def observe_world(
+    state: WorldState, spec: SceneSpec, rng: np.random.Generator, noise: BoardNoise = BOARD_NOISE
+) -> Observation:
+    """Observe a world that stands still for `WORLD_FRAMES` noisy frames.
+
+    Args:
+        state: Its true state.
+        spec: Its scene, for the objects' looks.
+        rng: Source of the noise.
+        noise: Its standard deviations.
+
+    Raises:
+        PerceptionError: A colour or shape has no known look.
+    """
+    by_id = {thing.id: thing for thing in spec.objects}
+    location = np.array([thing.pose_object_in_world.position for thing in state.objects]).reshape(-1, 3)
+    tracks = TrueTracks(
+        times=state.time + FRAME_TIME * np.arange(WORLD_FRAMES),
+        gripper_location=np.tile(state.pose_tool_in_world.position, (WORLD_FRAMES, 1)),
+        gripper_closed=np.full(WORLD_FRAMES, state.gripper_closed),
+        location=np.tile(location, (WORLD_FRAMES, 1, 1)),
+    )
+    return observed(tracks, [by_id[thing.id] for thing in state.objects], rng, noise)
