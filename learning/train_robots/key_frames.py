@@ -6,45 +6,33 @@ straight up, in the cell of the after layout; a lone drop starts with the block 
 down.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from learning.errors import LearningError
+from learning.perception.observation import Observation
+from learning.perception.observe import KeyFrame, observe_key_frames
 from learning.train_robots.layout import Cell
 from learning.train_robots.scene import Scene
-from robots.pose import FloatArray
+from learning.train_robots.scene_spec import scene_spec
 from twin.board import cell_centre
 
-FRAME_INTERVAL = 1.0
-"""Time between key frames [s]; only their order matters."""
 CLEARANCE = 2
 """Levels between the highest block and the level at which a block is carried: one for the carried block, one free."""
 
 
-@dataclass(frozen=True, slots=True)
-class KeyFrames:
-    """True positions in F key frames with N blocks.
+def key_frames(scene: Scene, rng: np.random.Generator) -> Observation:
+    """Observe the key frames of a scene through the board's noise; track numbers are indices in the before layout.
 
-    Attributes:
-        gripper_location: Tool frame, (F, 3) [m].
-        gripper_closed: Gripper state, (F,).
-        location: Block centres in the order of the before layout, (F, N, 3) [m].
+    Raises LearningError when not exactly one block moves.
     """
-
-    gripper_location: FloatArray
-    gripper_closed: NDArray[np.bool_]
-    location: FloatArray
-
-    @property
-    def times(self) -> FloatArray:
-        """Frame times, (F,) [s]."""
-        return np.arange(len(self.gripper_closed), dtype=np.float64) * FRAME_INTERVAL
+    return observe_key_frames(implied_key_frames(scene), scene_spec(scene).objects, rng)
 
 
-def implied_key_frames(scene: Scene) -> KeyFrames:
-    """Return the key frames of a scene in which exactly one block moves; LearningError for any other scene."""
+def implied_key_frames(scene: Scene) -> list[KeyFrame]:
+    """Return the true key frames of a scene, objects in the order of the before layout.
+
+    Raises LearningError when not exactly one block moves.
+    """
     move = scene.move
     if move is None:
         raise LearningError(f"scene {scene.number} does not move exactly one block; no key frames are implied")
@@ -68,16 +56,14 @@ def implied_key_frames(scene: Scene) -> KeyFrames:
     return _frames(scene, move.object_id, steps)
 
 
-def _frames(scene: Scene, moved: int, steps: list[tuple[Cell, bool, bool]]) -> KeyFrames:
-    still = np.array([cell_centre(*block.cell) for block in scene.before.blocks])
-    gripper = np.array([cell_centre(*cell) for cell, _, _ in steps])
-    location = np.repeat(still[np.newaxis], len(steps), axis=0)
-    where = still[moved]
-    for frame, (cell, _, carried) in enumerate(steps):
+def _frames(scene: Scene, moved: int, steps: list[tuple[Cell, bool, bool]]) -> list[KeyFrame]:
+    location = np.array([cell_centre(*block.cell) for block in scene.before.blocks])
+    frames = []
+    for cell, closed, carried in steps:
         if carried:
-            where = cell_centre(*cell)
-        location[frame, moved] = where
-    return KeyFrames(gripper, np.array([closed for _, closed, _ in steps]), location)
+            location[moved] = cell_centre(*cell)
+        frames.append(KeyFrame(cell_centre(*cell), closed, location.copy()))
+    return frames
 
 
 def _at_level(cell: Cell, level: int) -> Cell:
