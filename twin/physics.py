@@ -1,0 +1,309 @@
+"""The door to PyBullet: one DIRECT client of our own, and the calls that the twin needs, each with its client.
+
+PyBullet's default client is global to the process; nothing here ever uses it, so two worlds do not meet.
+"""
+
+import weakref
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pybullet
+from numpy.typing import NDArray
+
+from .errors import TwinError
+
+RawPose = tuple[tuple[float, float, float], tuple[float, float, float, float]]
+"""Position [m] and quaternion xyzw, as PyBullet gives them."""
+Rgb = tuple[float, float, float]
+Vector = Sequence[float]
+
+GRAVITY = 9.81
+SLEEP_BELOW = 1e-4
+"""Bodies whose squared speed stays below this for two seconds sleep: 10 mm/s or 10 mrad/s."""
+
+
+class Physics:
+    """One physics client. Body and link numbers are PyBullet's; link -1 is the base."""
+
+    def __init__(self, time_step: float, solver_iterations: int) -> None:
+        """Connect a client.
+
+        Raises:
+            TwinError: PyBullet has no client left (about a thousand may be open at once).
+        """
+        self._client = pybullet.connect(pybullet.DIRECT)
+        if self._client < 0:
+            raise TwinError("PyBullet gives no further client: close worlds that are no longer used")
+        self._closer = weakref.finalize(self, _disconnect, self._client)
+        pybullet.setGravity(0, 0, -GRAVITY, physicsClientId=self._client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=time_step,
+            numSolverIterations=solver_iterations,
+            deterministicOverlappingPairs=1,
+            physicsClientId=self._client,
+        )
+
+    def close(self) -> None:
+        """Disconnect; later calls fail."""
+        self._closer()
+
+    @property
+    def open(self) -> bool:
+        """Whether the client is still connected."""
+        return self._closer.alive
+
+    # Making bodies
+
+    def add_box(self, half_extents: Vector, position: Vector, mass: float, rgb: Rgb) -> int:
+        """Add a box [m, kg]; mass 0 stands still for ever. Returns the body."""
+        shape = pybullet.createCollisionShape(
+            pybullet.GEOM_BOX, halfExtents=list(half_extents), physicsClientId=self._client
+        )
+        visual = pybullet.createVisualShape(
+            pybullet.GEOM_BOX, halfExtents=list(half_extents), rgbaColor=[*rgb, 1], physicsClientId=self._client
+        )
+        return self._add_body(mass, shape, visual, position)
+
+    def add_hull(
+        self,
+        corners: NDArray[np.float64],
+        triangles: NDArray[np.int64],
+        drawn: NDArray[np.float64],
+        position: Vector,
+        mass: float,
+        rgb: Rgb,
+    ) -> int:
+        """Add a convex body.
+
+        Args:
+            corners: Corners of the collision hull around the centre of mass, (n, 3) [m].
+            triangles: Corner numbers of the drawn faces, (m, 3).
+            drawn: Corners of the drawn faces, (n, 3) [m].
+            position: Centre of mass [m].
+            mass: Mass [kg].
+            rgb: Colour.
+        """
+        shape = pybullet.createCollisionShape(
+            pybullet.GEOM_MESH, vertices=corners.tolist(), physicsClientId=self._client
+        )
+        return self._add_body(mass, shape, self._mesh_visual(drawn, triangles, rgb), position)
+
+    def add_picture(self, corners: NDArray[np.float64], triangles: NDArray[np.int64], rgb: Rgb) -> None:
+        """Add faces that are only drawn: corners (n, 3) [m] in the world, triangles (m, 3)."""
+        self._add_body(0, -1, self._mesh_visual(corners, triangles, rgb), (0, 0, 0))
+
+    def _mesh_visual(self, corners: NDArray[np.float64], triangles: NDArray[np.int64], rgb: Rgb) -> int:
+        # Every face gets corners of its own, so that it is lit flat.
+        flat = corners[triangles.ravel()]
+        sides = flat.reshape(-1, 3, 3)
+        normals = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        return int(
+            pybullet.createVisualShape(
+                pybullet.GEOM_MESH,
+                vertices=flat.tolist(),
+                indices=list(range(len(flat))),
+                normals=np.repeat(normals, 3, axis=0).tolist(),
+                rgbaColor=[*rgb, 1],
+                physicsClientId=self._client,
+            )
+        )
+
+    def _add_body(self, mass: float, shape: int, visual: int, position: Vector) -> int:
+        return int(pybullet.createMultiBody(mass, shape, visual, list(position), physicsClientId=self._client))
+
+    def add_robot(self, urdf: Path, pose: RawPose) -> int:
+        """Load a URDF with its base fixed. Returns the body.
+
+        Raises:
+            TwinError: PyBullet cannot load it.
+        """
+        try:
+            return int(pybullet.loadURDF(str(urdf), pose[0], pose[1], useFixedBase=True, physicsClientId=self._client))
+        except pybullet.error as error:
+            raise TwinError(f"{urdf}: PyBullet cannot load it: {error}") from error
+
+    def set_friction(self, body: int, link: int, lateral: float, spinning: float = 0.0, rolling: float = 0.0) -> None:
+        """Set a link's friction coefficients."""
+        pybullet.changeDynamics(
+            body,
+            link,
+            lateralFriction=lateral,
+            spinningFriction=spinning,
+            rollingFriction=rolling,
+            physicsClientId=self._client,
+        )
+
+    # Sleep: bodies that rest are left out of the solver until something that moves touches them
+
+    def let_sleep(self, body: int) -> None:
+        """Let a body fall asleep when it has rested for two seconds."""
+        pybullet.changeDynamics(
+            body,
+            -1,
+            activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
+            sleepThreshold=SLEEP_BELOW,
+            physicsClientId=self._client,
+        )
+
+    def put_to_sleep(self, body: int) -> None:
+        """Put a resting body to sleep now."""
+        pybullet.changeDynamics(body, -1, activationState=pybullet.ACTIVATION_STATE_SLEEP, physicsClientId=self._client)
+
+    def wake(self, body: int) -> None:
+        """Wake a body, with two seconds before it may sleep again."""
+        pybullet.changeDynamics(
+            body, -1, activationState=pybullet.ACTIVATION_STATE_WAKE_UP, physicsClientId=self._client
+        )
+
+    # Joints
+
+    def joints(self, body: int) -> dict[str, int]:
+        """Joint numbers by name, fixed joints included."""
+        count = pybullet.getNumJoints(body, physicsClientId=self._client)
+        return {self._joint_info(body, joint)[1].decode(): joint for joint in range(count)}
+
+    def links(self, body: int) -> dict[str, int]:
+        """Link numbers by name."""
+        count = pybullet.getNumJoints(body, physicsClientId=self._client)
+        return {self._joint_info(body, joint)[12].decode(): joint for joint in range(count)}
+
+    def joint_force(self, body: int, joint: int) -> float:
+        """Largest force [N] or torque [Nm] that the URDF gives a joint; 0 where it gives none."""
+        return float(self._joint_info(body, joint)[10])
+
+    def _joint_info(self, body: int, joint: int) -> tuple[bytes, ...]:
+        info: tuple[bytes, ...] = pybullet.getJointInfo(body, joint, physicsClientId=self._client)
+        return info
+
+    def reset_joint(self, body: int, joint: int, position: float) -> None:
+        """Place a joint at rest [rad or m]; only before a world starts."""
+        pybullet.resetJointState(body, joint, position, 0.0, physicsClientId=self._client)
+
+    def gear(self, body: int, first: int, second: int, force: float) -> None:
+        """Couple two links' joints so that their positions stay equal."""
+        gear = pybullet.createConstraint(
+            body,
+            first,
+            body,
+            second,
+            pybullet.JOINT_GEAR,
+            [0, 1, 0],
+            [0, 0, 0],
+            [0, 0, 0],
+            physicsClientId=self._client,
+        )
+        pybullet.changeConstraint(
+            gear, gearRatio=-1, maxForce=force, erp=0.5, relativePositionTarget=0, physicsClientId=self._client
+        )
+
+    def drive(self, body: int, joints: list[int], targets: list[float], forces: list[float]) -> None:
+        """Drive joints so that after the next step they are at the targets, forces [N, Nm] permitting."""
+        ones = [1.0] * len(joints)
+        pybullet.setJointMotorControlArray(
+            body,
+            joints,
+            pybullet.POSITION_CONTROL,
+            targetPositions=targets,
+            positionGains=ones,
+            velocityGains=ones,
+            forces=forces,
+            physicsClientId=self._client,
+        )
+
+    def drive_slowly(self, body: int, joint: int, target: float, force: float, speed: float) -> None:
+        """Drive one joint toward a target with limited force and speed [per s]."""
+        pybullet.setJointMotorControl2(
+            body,
+            joint,
+            pybullet.POSITION_CONTROL,
+            targetPosition=target,
+            positionGain=1.0,
+            velocityGain=1.0,
+            force=force,
+            maxVelocity=speed,
+            physicsClientId=self._client,
+        )
+
+    def joint_states(self, body: int, joints: list[int]) -> list[tuple[float, float]]:
+        """Position and velocity of each joint."""
+        return [state[:2] for state in pybullet.getJointStates(body, joints, physicsClientId=self._client)]
+
+    # Poses and contacts
+
+    def base_pose(self, body: int) -> RawPose:
+        """Pose of a body's centre of mass in the world."""
+        pose: RawPose = pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client)
+        return pose
+
+    def reset_base(self, body: int, pose: RawPose) -> None:
+        """Place a body at rest; only before a world starts."""
+        pybullet.resetBasePositionAndOrientation(body, pose[0], pose[1], physicsClientId=self._client)
+
+    def link_pose(self, body: int, link: int) -> RawPose:
+        """Pose of a link's frame (that of the URDF) in the world."""
+        state = pybullet.getLinkState(body, link, computeForwardKinematics=True, physicsClientId=self._client)
+        return state[4], state[5]
+
+    def touching(self, body: int, link: int, within: float) -> set[int]:
+        """Bodies whose surface is within a distance [m] of a link's, as of the last step."""
+        points = pybullet.getContactPoints(bodyA=body, linkIndexA=link, physicsClientId=self._client)
+        return {point[2] for point in points if point[8] <= within}
+
+    def touching_anywhere(self, body: int) -> set[int]:
+        """Bodies near any link of a body, as of the last step."""
+        return {point[2] for point in pybullet.getContactPoints(bodyA=body, physicsClientId=self._client)}
+
+    # Time
+
+    def step(self) -> None:
+        """Simulate one step."""
+        pybullet.stepSimulation(physicsClientId=self._client)
+
+    def save(self) -> int:
+        """Keep the present state in memory; returns its number."""
+        return int(pybullet.saveState(physicsClientId=self._client))
+
+    def restore(self, state: int) -> None:
+        """Go back to a kept state. Motor targets are not part of it."""
+        pybullet.restoreState(stateId=state, physicsClientId=self._client)
+
+    def forget(self, state: int) -> None:
+        """Free a kept state."""
+        if self.open:
+            pybullet.removeState(state, physicsClientId=self._client)
+
+    # Pictures
+
+    def picture(self, width: int, height: int, eye: Vector, target: Vector, field_of_view: float) -> NDArray[np.uint8]:
+        """Draw the scene with PyBullet's own software renderer, (height, width, 3).
+
+        Args:
+            width: Width [pixel].
+            height: Height [pixel].
+            eye: Where the camera is [m].
+            target: What it looks at [m].
+            field_of_view: Vertical angle [degree].
+        """
+        view = pybullet.computeViewMatrix(list(eye), list(target), [0, 0, 1], physicsClientId=self._client)
+        projection = pybullet.computeProjectionMatrixFOV(
+            field_of_view, width / height, 0.05, 5.0, physicsClientId=self._client
+        )
+        image = pybullet.getCameraImage(
+            width,
+            height,
+            view,
+            projection,
+            lightDirection=[-0.6, -0.9, 1.6],
+            shadow=True,
+            renderer=pybullet.ER_TINY_RENDERER,
+            physicsClientId=self._client,
+        )
+        return np.reshape(np.asarray(image[2], dtype=np.uint8), (height, width, 4))[:, :, :3].copy()
+
+
+def _disconnect(client: int) -> None:
+    """Close one client; the interpreter may already have taken it down."""
+    if pybullet.isConnected(client):
+        pybullet.disconnect(client)
