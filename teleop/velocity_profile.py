@@ -1,0 +1,47 @@
+"""The door to Ruckig: joint velocities that change within acceleration and jerk limits."""
+
+from collections.abc import Sequence
+
+from ruckig import ControlInterface, InputParameter, Ruckig, Synchronization, Trajectory
+
+_ANY_PERIOD = 1.0 / 240.0
+"""Ruckig wants a control period at construction; profiles are computed offline and read at any time."""
+
+
+class VelocityProfile:
+    """Time-optimal jerk-limited velocity changes of n joints, each on its own. Keeps nothing between two calls."""
+
+    def __init__(self, max_acceleration: Sequence[float], max_jerk: Sequence[float]) -> None:
+        """Set the limits, n each [rad/s², rad/s³]."""
+        n = len(max_acceleration)
+        self._otg = Ruckig(n, _ANY_PERIOD)
+        self._input = InputParameter(n)
+        self._input.control_interface = ControlInterface.Velocity
+        self._input.synchronization = Synchronization.No
+        self._input.max_acceleration = list(max_acceleration)
+        self._input.max_jerk = list(max_jerk)
+        self._input.current_position = [0.0] * n
+        self._rest = [0.0] * n
+        self._trajectory = Trajectory(n)
+        self._max_acceleration = tuple(max_acceleration)
+
+    def after(
+        self, velocity: Sequence[float], acceleration: Sequence[float], target: Sequence[float], dt: float
+    ) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Velocity and acceleration `dt` [s] later on the fastest way to the target velocity (then held), n each."""
+        self._solve(velocity, acceleration, target)
+        _, speeds, rates = self._trajectory.at_time(dt)
+        return tuple(speeds), tuple(
+            min(max(rate, -limit), limit) for rate, limit in zip(rates, self._max_acceleration, strict=True)
+        )
+
+    def travel_to_rest(self, velocity: Sequence[float], acceleration: Sequence[float]) -> list[tuple[float, float]]:
+        """How far each joint moves back and ahead [rad] while it brakes: (lowest <= 0, highest >= 0), n pairs."""
+        self._solve(velocity, acceleration, self._rest)
+        return [(bound.min, bound.max) for bound in self._trajectory.position_extrema]
+
+    def _solve(self, velocity: Sequence[float], acceleration: Sequence[float], target: Sequence[float]) -> None:
+        self._input.current_velocity = list(velocity)
+        self._input.current_acceleration = list(acceleration)
+        self._input.target_velocity = list(target)
+        self._otg.calculate(self._input, self._trajectory)
