@@ -120,7 +120,16 @@ class Physics:
             TwinError: PyBullet cannot load it.
         """
         try:
-            return int(pybullet.loadURDF(str(urdf), pose[0], pose[1], useFixedBase=True, physicsClientId=self._client))
+            return int(
+                pybullet.loadURDF(
+                    str(urdf),
+                    pose[0],
+                    pose[1],
+                    useFixedBase=True,
+                    flags=pybullet.URDF_USE_INERTIA_FROM_FILE,
+                    physicsClientId=self._client,
+                )
+            )
         except pybullet.error as error:
             raise TwinError(f"{urdf}: PyBullet cannot load it: {error}") from error
 

@@ -32,9 +32,9 @@ would stay asleep, in mid-air, when it is let go."""
 
 _TABLE_RGB = (0.62, 0.56, 0.50)
 _SQUARES_RGB = ((0.93, 0.92, 0.88), (0.36, 0.40, 0.46))
-_EYE = (-0.42, -0.52, 0.78)
-_LOOKS_AT = (0.15, 0.17, 0.12)
-_FIELD_OF_VIEW = 45.0
+_EYE = (-0.25, -0.50, 1.30)
+_LOOKS_AT = (0.13, 0.18, 0.36)
+_FIELD_OF_VIEW = 50.0
 
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)
