@@ -4,7 +4,7 @@ A release is a directory with `commands.txt` and `configuration.txt`. The tree a
 and are read in `learning.evaluation` alone.
 """
 
-from learning.train_robots.key_frames import implied_key_frames, key_frames
+from learning.train_robots.key_frames import implied_key_frames, key_frames, observe_before
 from learning.train_robots.layout import Block, Cell, Layout
 from learning.train_robots.release import Command, Release
 from learning.train_robots.scene import Scene, ShownMove
@@ -21,6 +21,7 @@ __all__ = [
     "ShownMove",
     "implied_key_frames",
     "key_frames",
+    "observe_before",
     "scene_spec",
     "write_synthetic_release",
 ]

@@ -10,7 +10,7 @@ import numpy as np
 
 from learning.errors import LearningError
 from learning.perception.observation import Observation
-from learning.perception.observe import KeyFrame, observe_key_frames
+from learning.perception.observe import KEY_FRAME_LENGTH, WORLD_FRAMES, KeyFrame, observe_key_frames
 from learning.train_robots.layout import Cell
 from learning.train_robots.scene import Scene
 from learning.train_robots.scene_spec import scene_spec
@@ -26,6 +26,15 @@ def key_frames(scene: Scene, rng: np.random.Generator) -> Observation:
     Raises LearningError when not exactly one block moves.
     """
     return observe_key_frames(implied_key_frames(scene), scene_spec(scene).objects, rng)
+
+
+def observe_before(scene: Scene, rng: np.random.Generator) -> Observation:
+    """Observe the layout before the action for a second, through the board's noise: what a listener sees."""
+    before = scene.before
+    still = KeyFrame(
+        cell_centre(*before.gripper), before.closed, np.array([cell_centre(*block.cell) for block in before.blocks])
+    )
+    return observe_key_frames([still] * (WORLD_FRAMES // KEY_FRAME_LENGTH), scene_spec(scene).objects, rng)
 
 
 def implied_key_frames(scene: Scene) -> list[KeyFrame]:

@@ -1,0 +1,211 @@
+"""The Train-Robots examination: how many commands are understood rightly (design sections 4 and 6)."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from functools import partial
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+
+from learning.concept_id import Concept
+from learning.evaluation.annotation import load_annotations
+from learning.evaluation.answers import Answer, Learn, Student, ask
+from learning.evaluation.baselines import SETTINGS, baseline_credits
+from learning.evaluation.command_score import CommandScore, score
+from learning.evaluation.folds import Fold, Split, make_folds
+from learning.evaluation.kinds import kinds_of, outside_vocabulary
+from learning.evaluation.machine import machine
+from learning.evaluation.public_tree import PublicNode
+from learning.train_robots.release import Release
+
+FoldAnswers = tuple[list[Answer], dict[Concept, str]]
+
+
+@dataclass(frozen=True)
+class TrainRobotsReport:
+    """Scores of all asked commands.
+
+    Attributes:
+        scores: One a command, in rising order of command id.
+        kinds: Kinds of each annotated command, by command id.
+        outside: Labels of each annotated command that the vocabulary of meaning lacks, by command id.
+        starts_held: Command ids whose scene starts with a block in the gripper.
+        baselines: Name to the expected correctness of each command, in an order of its own.
+        seed: Seed of everything random.
+        settings: How the figures were made: folds, split, baselines' settings.
+    """
+
+    scores: tuple[CommandScore, ...]
+    kinds: Mapping[int, tuple[str, ...]]
+    outside: Mapping[int, tuple[str, ...]]
+    starts_held: frozenset[int]
+    baselines: Mapping[str, Sequence[float]]
+    seed: int
+    settings: Mapping[str, object] = field(default_factory=dict)
+
+    def kind_table(self) -> list[tuple[str, int, int]]:
+        """Rows of kind, commands, and commands that were done rightly; the most frequent kind first."""
+        right = {s.command.id for s in self.scores if s.right}
+        members: dict[str, list[int]] = {}
+        for command, kinds in self.kinds.items():
+            for kind in kinds:
+                members.setdefault(kind, []).append(command)
+        rows = [(kind, len(ids), sum(number in right for number in ids)) for kind, ids in members.items()]
+        return sorted(rows, key=lambda row: (-row[1], row[0]))
+
+    def failures(self) -> list[dict[str, object]]:
+        """Command id, sentence and reason of every wrong answer."""
+        return [
+            {"command": s.command.id, "scene": s.command.scene, "sentence": s.command.sentence, "reason": s.reason}
+            for s in self.scores
+            if not s.right
+        ]
+
+    def figures(self) -> dict[str, float | None]:
+        """All figures by their dotted names; None where there is nothing to measure."""
+        within = [s for s in self.scores if s.command.id in self.outside and not self.outside[s.command.id]]
+        annotated = bool(self.outside)
+        figures: dict[str, float | None] = {
+            "commands": len(self.scores),
+            "execution_accuracy": _mean(s.right for s in self.scores),
+            "rcl_exact": _mean(s.rcl_exact for s in self.scores if s.rcl_exact is not None),
+            "subtree_score": _mean(s.subtree for s in self.scores if s.subtree is not None),
+            "understood": _mean(s.understood for s in self.scores),
+            "execution_accuracy_without_held": _mean(
+                s.right for s in self.scores if s.command.id not in self.starts_held
+            ),
+            "vocabulary.commands": len(within) if annotated else None,
+            "vocabulary.ceiling": len(within) / len(self.outside) if annotated else None,
+            "vocabulary.execution_accuracy": _mean(s.right for s in within),
+        }
+        for kind, commands, right in self.kind_table():
+            name = kind.replace(",", "").replace(" ", "_")
+            figures[f"kind.{name}.commands"] = commands
+            figures[f"kind.{name}.execution_accuracy"] = right / commands
+        return figures
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the object that `showtell evaluate train-robots --json` prints."""
+        return {
+            "figures": self.figures(),
+            "baselines": {f"{name}.execution_accuracy": _mean(credit) for name, credit in self.baselines.items()},
+            "machine": machine(),
+            "seed": self.seed,
+            "settings": dict(self.settings),
+            "failures": self.failures(),
+        }
+
+
+def cross_validate(
+    release: Release,
+    learn: Learn,
+    *,
+    folds: int = 4,
+    split: Split = "groups",
+    seed: int = 0,
+    jobs: int = 1,
+    on_fold: Callable[[int, int], None] = lambda done, total: None,
+) -> TrainRobotsReport:
+    """Learn on all folds but one and ask that one, for every fold.
+
+    Args:
+        release: Commands and scenes.
+        learn: Makes a student from scenes and commands; with more than one job it must be picklable.
+        folds: Number of folds.
+        split: `groups` or `commands`, see `make_folds`.
+        seed: Seed of the split by commands.
+        jobs: Processes to use; each works on a fold of its own.
+        on_fold: Called with the number of folds done and their total.
+
+    Raises:
+        LearningError: So many folds are not possible.
+        ReleaseError: `annotation.txt` is malformed.
+    """
+    annotations = load_annotations(release.directory)
+    parts = make_folds(release, folds, split, np.random.default_rng(seed))
+    scores: list[CommandScore] = []
+    baselines: dict[str, list[float]] = {}
+    for done, (fold, answers) in enumerate(_run(partial(_examine, learn, release), parts, jobs), start=1):
+        scores += _scored(release, answers, annotations)
+        for name, credit in baseline_credits(release.scenes, fold.learned, fold.asked).items():
+            baselines.setdefault(name, []).extend(credit)
+        on_fold(done, len(parts))
+    settings = {"folds": folds, "split": split, "baselines": SETTINGS}
+    return _report(release, scores, annotations, baselines, seed, settings)
+
+
+def examine(
+    release: Release,
+    student: Student,
+    *,
+    seed: int = 0,
+    on_answer: Callable[[], None] = lambda: None,
+) -> TrainRobotsReport:
+    """Ask a student that has learned already all commands of a release.
+
+    Args:
+        release: Commands and scenes, of the release that was learned from or of another.
+        student: Who is asked.
+        seed: Seed that the student was made with, for the report.
+        on_answer: Called after every answer.
+
+    Raises:
+        ReleaseError: `annotation.txt` is malformed.
+    """
+    annotations = load_annotations(release.directory)
+    answers = ask(student, release.scenes, release.commands, on_answer)
+    credit = baseline_credits(release.scenes, (), release.commands)
+    settings = {"folds": None, "split": None, "baselines": {"random_move": SETTINGS["random_move"]}}
+    return _report(release, _scored(release, answers, annotations), annotations, credit, seed, settings)
+
+
+def _examine(learn: Learn, release: Release, fold: Fold) -> FoldAnswers:
+    return ask(learn(fold.scenes, fold.learned), release.scenes, fold.asked)
+
+
+def _run(work: Callable[[Fold], FoldAnswers], folds: Sequence[Fold], jobs: int) -> Iterator[tuple[Fold, FoldAnswers]]:
+    if jobs <= 1:
+        for fold in folds:
+            yield fold, work(fold)
+        return
+    with ProcessPoolExecutor(min(jobs, len(folds)), mp_context=get_context("spawn")) as pool:
+        waiting = {pool.submit(work, fold): fold for fold in folds}
+        for future in as_completed(waiting):
+            yield waiting[future], future.result()
+
+
+def _scored(release: Release, answers: FoldAnswers, annotations: Mapping[int, PublicNode] | None) -> list[CommandScore]:
+    said, names = answers
+    trees = annotations or {}
+    return [score(one, release.scenes[one.command.scene], trees.get(one.command.id), names) for one in said]
+
+
+def _report(
+    release: Release,
+    scores: Iterable[CommandScore],
+    annotations: Mapping[int, PublicNode] | None,
+    baselines: Mapping[str, Sequence[float]],
+    seed: int,
+    settings: Mapping[str, object],
+) -> TrainRobotsReport:
+    ordered = tuple(sorted(scores, key=lambda one: one.command.id))
+    asked = {one.command.id for one in ordered}
+    trees = {number: tree for number, tree in (annotations or {}).items() if number in asked}
+    return TrainRobotsReport(
+        scores=ordered,
+        kinds={number: kinds_of(tree) for number, tree in trees.items()},
+        outside={number: outside_vocabulary(tree) for number, tree in trees.items()},
+        starts_held=frozenset(
+            one.command.id for one in ordered if release.scenes[one.command.scene].before.held is not None
+        ),
+        baselines=baselines,
+        seed=seed,
+        settings=settings,
+    )
+
+
+def _mean(values: Iterable[float | bool | None]) -> float | None:
+    numbers = [float(value) for value in values if value is not None]
+    return sum(numbers) / len(numbers) if numbers else None
