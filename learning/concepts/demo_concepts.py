@@ -11,7 +11,7 @@ from learning.concepts.feature_space import FEATURE_SPACES, NEAR
 from learning.concepts.gaussian import Gaussian
 from learning.errors import PerceptionError
 from learning.perception.observation import Observation
-from learning.perception.tracks import at_rest, moved_object
+from learning.perception.tracks import moved_object, resting_track
 from robots.pose import FloatArray
 
 FRAMES = 8
@@ -59,29 +59,53 @@ def feature_values(observation: Observation) -> dict[str, Values]:
     flies past is no relation. Distance holds near pairs of objects, and the gripper with the object it manipulates.
     """
     frames = np.unique(np.linspace(0, len(observation.times) - 1, FRAMES).round().astype(int))
-    rest = at_rest(observation)[frames]
-    frame, obj = np.nonzero(rest)
-    picked = frames[frame]
+    track = resting_track(observation)[frames]
+    frame, obj = np.nonzero(track >= 0)
+    picked, tracks = frames[frame], track[frame, obj]
     measured = {
         "colour": observation.colour[picked, obj],
         "shape": observation.shape[picked, obj],
         "location": observation.location[picked, obj],
     }
-    values = {name: (FEATURE_SPACES[name].embed(value), obj) for name, value in measured.items()}
+    values = {name: (FEATURE_SPACES[name].embed(value), tracks) for name, value in measured.items()}
 
-    location = observation.location[frames]
-    offset = location[:, :, None] - location[:, None]  # [f, i, j]: i as seen from j
-    near = np.linalg.norm(offset, axis=3) < NEAR
-    near &= rest[:, :, None] & rest[:, None, :] & ~np.eye(len(observation.object_ids), dtype=bool)
-    which, i, j = np.nonzero(near)
-    pair = i * len(observation.object_ids) + j
-    offsets = offset[which, i, j]
+    pair, offsets = _near_pairs(observation.location[frames], track)
     values["direction"] = FEATURE_SPACES["direction"].embed(offsets), pair
-    upper = i < j  # distance has no sense of direction: each pair once
+    # Distance has no sense of direction: each pair once, and as one value, its mean, lest the many pairs of a crowded
+    # scene drown the gripper's few.
+    names, which, sizes = np.unique(pair, return_inverse=True, return_counts=True)
+    means = np.zeros((len(names), 3))
+    np.add.at(means, which, offsets / sizes[which, None])
+    wide = 2 * len(observation.object_ids)
+    once = names // wide < names % wide
     gripper, gripper_track = _gripper_offsets(observation)
-    distance = FEATURE_SPACES["distance"].embed(np.concatenate([offsets[upper], gripper]))
-    values["distance"] = distance, np.concatenate([pair[upper], gripper_track])
+    distance = FEATURE_SPACES["distance"].embed(np.concatenate([means[once], gripper]))
+    values["distance"] = distance, np.concatenate([names[once], gripper_track])
     return values
+
+
+def _near_pairs(location: FloatArray, track: NDArray[np.int64]) -> tuple[NDArray[np.int64], FloatArray]:
+    """Ordered pairs of near objects at rest: a number for each pair of resting places, (n,), and offsets, (n, 3) [m].
+
+    Whether a pair is near is decided once, by its mean offset: decided frame by frame, noise would let the pairs just
+    out of reach in whenever they look nearer than they are.
+
+    Args:
+        location: Object centres, (F, N, 3) [m].
+        track: Resting place of each, -1 for none, (F, N).
+    """
+    number = location.shape[1]
+    offset = location[:, :, None] - location[:, None]  # [f, i, j]: i as seen from j
+    related = np.linalg.norm(offset, axis=3) < 1.2 * NEAR
+    related &= (track[:, :, None] >= 0) & (track[:, None, :] >= 0) & ~np.eye(number, dtype=bool)
+    frame, i, j = np.nonzero(related)
+    names, pair = np.unique(2 * number * track[frame, i] + track[frame, j], return_inverse=True)
+    offsets = offset[frame, i, j]
+    sums = np.zeros((len(names), 3))
+    np.add.at(sums, pair, offsets)
+    near = np.linalg.norm(sums / np.bincount(pair, minlength=len(names))[:, None], axis=1) < NEAR
+    keep = near[pair]
+    return names[pair][keep], offsets[keep]
 
 
 def _gripper_offsets(observation: Observation) -> tuple[FloatArray, NDArray[np.int64]]:

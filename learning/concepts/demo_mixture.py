@@ -41,7 +41,7 @@ def fit_mixture(points: FloatArray, tracks: NDArray[np.int64], space: type[Featu
             if candidate[0] >= best[0]:
                 break
             best = candidate
-    components = [_component(points[best[1] == label], space) for label in np.unique(best[1])]
+    components = [_component(points[best[1] == label], space, space.floor) for label in np.unique(best[1])]
     return tuple(sorted(components, key=lambda component: -component.count))
 
 
@@ -58,32 +58,36 @@ def _modes(points: FloatArray, tracks: NDArray[np.int64], space: type[FeatureSpa
     return np.asarray(labels[track_of_point], dtype=np.int64)
 
 
-def _component(points: FloatArray, space: type[FeatureSpace]) -> Gaussian:
-    """Mean and covariance (with the floor) of the values that a component holds: D_k of appendix A."""
+def _component(points: FloatArray, space: type[FeatureSpace], least: float) -> Gaussian:
+    """Mean and covariance (with the variance of `least` added) of the values that a component holds: D_k of appendix A."""
     mean = points.mean(axis=0)
     centred = points - mean
     covariance = centred.T @ centred / len(points)
     if space.diagonal:
         covariance = np.diag(np.diag(covariance))
-    return Gaussian(mean, covariance + space.floor**2 * np.eye(space.dimension), float(len(points)))
+    return Gaussian(mean, covariance + least**2 * np.eye(space.dimension), float(len(points)))
 
 
 def _fit(points: FloatArray, labels: NDArray[np.int64], space: type[FeatureSpace]) -> tuple[float, NDArray[np.int64]]:
     """Run EM from a labelling; return BIC and the most likely component of each point, (n,)."""
-    start = [_component(points[labels == label], space) for label in np.unique(labels)]
+    start = [_component(points[labels == label], space, space.grain) for label in np.unique(labels)]
     if len(start) > len(points) or (len(start) == 1 and len(points) == 1):
         return np.inf, labels
-    if space.diagonal:
-        precisions = np.array([1.0 / np.diag(component.covariance) for component in start])
+    covariances = np.array([component.covariance for component in start])
+    weights = np.array([component.count for component in start]) / len(points)
+    if space.shared_noise:
+        kind, precisions = "tied", np.linalg.inv(np.einsum("k,kij->ij", weights, covariances))
+    elif space.diagonal:
+        kind, precisions = "diag", 1.0 / np.diagonal(covariances, axis1=1, axis2=2)
     else:
-        precisions = np.linalg.inv(np.array([component.covariance for component in start]))
+        kind, precisions = "full", np.linalg.inv(covariances)
     model = GaussianMixture(
         len(start),
-        covariance_type="diag" if space.diagonal else "full",
-        reg_covar=space.floor**2,
+        covariance_type=kind,
+        reg_covar=space.grain**2,
         max_iter=MAX_ITERATIONS,
         tol=TOLERANCE,
-        weights_init=np.array([component.count for component in start]) / len(points),
+        weights_init=weights,
         means_init=np.array([component.mean for component in start]),
         precisions_init=precisions,
         random_state=0,
@@ -101,7 +105,7 @@ def _merge_closest(
     names = np.unique(labels)
     if len(names) < 2:
         return None
-    components = [_component(points[labels == name], space) for name in names]
+    components = [_component(points[labels == name], space, space.grain) for name in names]
     means = np.array([component.mean for component in components])
     covariances = np.array([component.covariance for component in components])
     difference = means[:, None] - means[None]
@@ -118,11 +122,11 @@ def _split_widest(points: FloatArray, labels: NDArray[np.int64], space: type[Fea
     """Labels with the component that stretches furthest cut across its main axis; None when none can be cut."""
     names, counts = np.unique(labels, return_counts=True)
     widest, axis = None, np.zeros(space.dimension)
-    largest = 2.0 * space.floor**2  # a component that is nearly all floor has nothing to split
+    largest = 2.0 * space.grain**2  # within the grain there is nothing to split
     for name, count in zip(names, counts, strict=True):
         if count < 4:
             continue
-        values, vectors = np.linalg.eigh(_component(points[labels == name], space).covariance)
+        values, vectors = np.linalg.eigh(_component(points[labels == name], space, space.grain).covariance)
         if values[-1] > largest:
             largest, widest, axis = values[-1], name, vectors[:, -1]
     if widest is None:

@@ -9,7 +9,8 @@ clustered samples (Kish's design effect): n values in m demos with intraclass co
 
 at most m / r. It grows with the number of demos, so that different concepts stay apart ever more surely as learning
 goes on, while the light of one demo is never taken for a new colour. The covariance floor of each space, which is
-part of every covariance, counts as a prior worth d + 2 values.
+part of every covariance, is known rather than estimated: it counts as a prior worth `PRIOR_VALUES` values. Without it
+a place seen for a frame or two, whose spread nobody can estimate, would equal any other.
 """
 
 import numpy as np
@@ -19,6 +20,9 @@ from robots.pose import FloatArray
 
 SHAPE_CORRELATION = 0.05
 """Intraclass correlation used for covariances: n values of a demo tell at most 20 values' worth about its spread."""
+
+PRIOR_VALUES = 40
+"""What the covariance floor is worth in the degrees of freedom of the pooled covariance."""
 
 
 def effective_size(count: FloatArray, demos: FloatArray, correlation: float) -> FloatArray:
@@ -33,6 +37,10 @@ def covariance_p_value(covariance: FloatArray, others: FloatArray, size: FloatAr
     W = tr((S - I)^2) / d - (d / n) (tr(S) / d)^2 + d / n with S the covariance whitened by the other; n d W / 2 is
     chi-squared with d (d + 1) / 2 degrees of freedom. Of diagonal covariances only the d variances are compared.
 
+    W hardly notices a covariance that is far smaller than the other (S near 0 gives W = 1), and would let a component
+    that spans two concepts swallow both. Equality holds both ways, so each is whitened by the other in turn, and the
+    smaller p-value counts.
+
     Args:
         covariance: Of the new component, (d, d).
         others: Of the old components, (K, d, d).
@@ -42,16 +50,21 @@ def covariance_p_value(covariance: FloatArray, others: FloatArray, size: FloatAr
     Returns:
         (K,) in 0..1.
     """
-    dimension = covariance.shape[0]
     if diagonal:
-        ratio = np.diag(covariance) / np.diagonal(others, axis1=1, axis2=2)
-        statistic = 0.5 * size * np.sum((ratio - 1.0) ** 2, axis=1)
-        return np.asarray(chdtrc(float(dimension), statistic))
-    whitened = np.linalg.solve(others, np.broadcast_to(covariance, others.shape))  # similar to L^-1 C L^-T
-    trace = np.trace(whitened, axis1=1, axis2=2)
-    trace_of_square = np.einsum("kij,kji->k", whitened, whitened)
-    w = (trace_of_square - 2.0 * trace + dimension) / dimension
-    w = w - dimension / size * (trace / dimension) ** 2 + dimension / size
+        ratios = np.diag(covariance) / np.diagonal(others, axis1=1, axis2=2)
+    else:
+        # Eigenvalues of A^-1 C are those of the whitened covariance L^-1 C L^-T, where A = L L^T.
+        ratios = np.real(np.linalg.eigvals(np.linalg.solve(others, np.broadcast_to(covariance, others.shape))))
+    return np.minimum(_w_p_value(ratios, size, diagonal), _w_p_value(1.0 / ratios, size, diagonal))
+
+
+def _w_p_value(eigenvalues: FloatArray, size: FloatArray, diagonal: bool) -> FloatArray:
+    """P-value of W from the eigenvalues (K, d) of the whitened covariances."""
+    dimension = eigenvalues.shape[1]
+    squares = np.sum((eigenvalues - 1.0) ** 2, axis=1)
+    if diagonal:
+        return np.asarray(chdtrc(float(dimension), 0.5 * size * squares))
+    w = squares / dimension - dimension / size * (eigenvalues.mean(axis=1) ** 2 - 1.0)
     return np.asarray(chdtrc(dimension * (dimension + 1) / 2.0, np.maximum(0.5 * size * dimension * w, 0.0)))
 
 
@@ -90,6 +103,6 @@ def mean_p_value(
     scaled = np.linalg.solve(pooled, difference[:, :, None])[:, :, 0]
     harmonic = size * other_sizes / (size + other_sizes)
     t_squared = harmonic * np.einsum("kd,kd->k", difference, scaled)
-    freedom = total - 2.0 + (dimension + 2.0)  # the floor's prior values
+    freedom = total - 2.0 + PRIOR_VALUES
     f_statistic = t_squared * (freedom - dimension + 1.0) / (freedom * dimension)
     return np.asarray(fdtrc(float(dimension), freedom - dimension + 1.0, f_statistic))

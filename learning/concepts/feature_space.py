@@ -10,7 +10,7 @@ import numpy as np
 
 from robots.pose import FloatArray
 
-NEAR = 0.0855
+NEAR = 0.086
 """Objects whose centres are closer than this relate to one another [m]: a bit more than twice the side of a block, so
 that a block relates to those in the cells around, above and below it, diagonals included."""
 FAR = 0.13
@@ -24,7 +24,10 @@ class FeatureSpace:
         name: Short name, as in the concept id `colour_3`.
         dimension: Length d of an embedded value.
         diagonal: Whether covariances are kept diagonal.
-        floor: Standard deviation below which differences mean nothing; its square is added to every variance.
+        shared_noise: Whether the components of one demo are fitted with one covariance, that of the sensor. A component
+            of its own for a few values then costs few parameters, so that BIC does not lump rare things together.
+        grain: Standard deviation added in the fit of one demo (`reg_covar`): finer structure is not looked for.
+        floor: Standard deviation below which differences mean nothing; its square is added to every concept's variances.
         resolution: Modes closer than this start out as one in the search for the number of components.
         correlation: Share of a value's variance that all values of one demo have in common (intraclass correlation):
             light, placement and viewpoint stay the same within a demo, so its values are not independent draws.
@@ -33,6 +36,8 @@ class FeatureSpace:
     name: ClassVar[str]
     dimension: ClassVar[int]
     diagonal: ClassVar[bool] = False
+    shared_noise: ClassVar[bool] = True
+    grain: ClassVar[float]
     floor: ClassVar[float]
     resolution: ClassVar[float]
     correlation: ClassVar[float]
@@ -51,7 +56,8 @@ class Colour(FeatureSpace):
 
     name = "colour"
     dimension = 3
-    floor = 0.05
+    grain = 0.08
+    floor = 0.08
     resolution = 0.35
     correlation = 0.3
 
@@ -69,8 +75,10 @@ class Shape(FeatureSpace):
     name = "shape"
     dimension = 33
     diagonal = True
+    shared_noise = False
+    grain = 0.001
     floor = 0.003
-    resolution = 0.05
+    resolution = 0.03
     correlation = 0.3
 
 
@@ -79,6 +87,7 @@ class Location(FeatureSpace):
 
     name = "location"
     dimension = 2
+    grain = 0.003
     floor = 0.008
     resolution = 0.025
     correlation = 0.5
@@ -94,6 +103,7 @@ class Direction(FeatureSpace):
 
     name = "direction"
     dimension = 3
+    grain = 0.03
     floor = 0.08
     resolution = 0.3
     correlation = 0.3
@@ -117,6 +127,7 @@ class Distance(FeatureSpace):
 
     name = "distance"
     dimension = 1
+    grain = 0.012
     floor = 0.008
     resolution = 0.018
     correlation = 0.3

@@ -11,7 +11,7 @@ from learning.perception.observation import Observation
 
 if TYPE_CHECKING:
     from learning.perception.observe import KeyFrame, observe_demo, observe_key_frames, observe_world
-    from learning.perception.perceive import perceive, percept_of
+    from learning.perception.predicates import perceive, percept_of
 
 __all__ = [
     "KeyFrame",
@@ -28,8 +28,8 @@ _HOMES = {
     "observe_demo": "observe",
     "observe_key_frames": "observe",
     "observe_world": "observe",
-    "perceive": "perceive",
-    "percept_of": "perceive",
+    "perceive": "predicates",
+    "percept_of": "predicates",
 }
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from learning.errors import PerceptionError
 from learning.perception.board_noise import BOARD_NOISE, FRAME_TIME, BoardNoise, TrueTracks, observed
 from learning.perception.observation import Observation
 from robots.pose import FloatArray
@@ -51,11 +52,10 @@ def observe_key_frames(
         noise: Its standard deviations.
 
     Raises:
-        ValueError: There are no key frames.
-        PerceptionError: A colour or shape has no known look.
+        PerceptionError: There are no key frames, or a colour or shape has no known look.
     """
     if not frames:
-        raise ValueError("there are no key frames to observe: give at least one")
+        raise PerceptionError("there are no key frames to observe; give at least one")
     repeated = [frame for frame in frames for _ in range(KEY_FRAME_LENGTH)]
     tracks = TrueTracks(
         times=FRAME_TIME * np.arange(len(repeated)),

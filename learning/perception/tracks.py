@@ -37,6 +37,21 @@ def at_start(observation: Observation) -> NDArray[np.bool_]:
     return still
 
 
+def resting_track(observation: Observation) -> NDArray[np.int64]:
+    """Number of the resting place of each object in each frame, (F, N): object i rests at i first and at N + i last.
+
+    -1 where it is on its way. An object that was not moved rests at its first place throughout.
+    """
+    first, last = anchors(observation)
+    number = len(observation.object_ids)
+    nearer_last = np.linalg.norm(observation.location - last, axis=2) < np.linalg.norm(
+        observation.location - first, axis=2
+    )
+    moved = np.linalg.norm(last - first, axis=1) > MOVED
+    tracks = np.arange(number) + number * (nearer_last & moved)
+    return np.where(at_rest(observation), tracks, -1)
+
+
 def moved_object(observation: Observation) -> int:
     """Index of the manipulated object: the one whose place changed most, else the one the closed gripper carried.
 
