@@ -122,6 +122,16 @@ class World:
         """Simulated time since the scene started [s]."""
         return self._steps * self.DT
 
+    @property
+    def joint_positions(self) -> FloatArray:
+        """Measured positions of the driven joints, (n,) [rad]: what a control loop needs, without the whole state."""
+        return self._arm.q
+
+    @property
+    def joint_velocities(self) -> FloatArray:
+        """Measured velocities of the driven joints, (n,) [rad/s]."""
+        return self._arm.dq
+
     def step(self, command: JointCommand) -> None:
         """Simulate one step of 1/240 s.
 
