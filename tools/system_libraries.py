@@ -1,7 +1,7 @@
 """Check the system libraries that the Python packages load, and install what is missing where that is allowed.
 
-Open3D's wheel brings neither libusb nor the graphics libraries and does not import without them. Runs before anything is
-installed, so it uses the standard library alone.
+Open3D's wheel brings neither libusb nor the graphics libraries and does not import without them. This runs before
+anything is installed, so it uses the standard library alone.
 """
 
 import ctypes
