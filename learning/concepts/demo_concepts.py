@@ -18,6 +18,8 @@ FRAMES = 8
 """Frames of a demo whose values are clustered, spread evenly: what rests looks the same in all the others."""
 MOST_POINTS = 400
 """Values of a space that are clustered at most, drawn at random, so that a crowded scene takes no longer."""
+MOST_DISTANCES = 40
+"""Distances between objects that are clustered at most, beside the dozen between gripper and object."""
 
 Values = tuple[FloatArray, NDArray[np.int64]]
 
@@ -40,9 +42,9 @@ def fit_demo(observation: Observation, rng: np.random.Generator) -> DemoConcepts
 
     Args:
         observation: The demo's tracks.
-        rng: Draws the values when there are more than `MOST_POINTS`.
+        rng: Draws values where there are more than are clustered.
     """
-    values = feature_values(observation)
+    values = feature_values(observation, rng)
     components = {}
     for name, (points, tracks) in values.items():
         if len(points) > MOST_POINTS:
@@ -52,7 +54,7 @@ def fit_demo(observation: Observation, rng: np.random.Generator) -> DemoConcepts
     return DemoConcepts(components)
 
 
-def feature_values(observation: Observation) -> dict[str, Values]:
+def feature_values(observation: Observation, rng: np.random.Generator) -> dict[str, Values]:
     """Embedded values to cluster and the track of each, by feature space.
 
     Properties and relations are those of objects at rest: a place is where something rests, and what a carried object
@@ -71,16 +73,13 @@ def feature_values(observation: Observation) -> dict[str, Values]:
 
     pair, offsets = _near_pairs(observation.location[frames], track)
     values["direction"] = FEATURE_SPACES["direction"].embed(offsets), pair
-    # Distance has no sense of direction: each pair once, and as one value, its mean, lest the many pairs of a crowded
-    # scene drown the gripper's few.
-    names, which, sizes = np.unique(pair, return_inverse=True, return_counts=True)
-    means = np.zeros((len(names), 3))
-    np.add.at(means, which, offsets / sizes[which, None])
     wide = 2 * len(observation.object_ids)
-    once = names // wide < names % wide
+    once = np.flatnonzero(pair // wide < pair % wide)  # distance has no sense of direction: each pair once
+    # Few of them, lest the many pairs of a crowded scene drown the gripper's values.
+    once = once if len(once) <= MOST_DISTANCES else np.sort(rng.choice(once, MOST_DISTANCES, replace=False))
     gripper, gripper_track = _gripper_offsets(observation)
-    distance = FEATURE_SPACES["distance"].embed(np.concatenate([means[once], gripper]))
-    values["distance"] = distance, np.concatenate([names[once], gripper_track])
+    distance = FEATURE_SPACES["distance"].embed(np.concatenate([offsets[once], gripper]))
+    values["distance"] = distance, np.concatenate([pair[once], gripper_track])
     return values
 
 

@@ -34,10 +34,11 @@ def fit_mixture(points: FloatArray, tracks: NDArray[np.int64], space: type[Featu
     """
     if len(points) == 0:
         return ()
-    best = _fit(points, _modes(points, tracks, space), space)
+    _, tracks = np.unique(tracks, return_inverse=True)
+    best = _fit(points, _modes(points, tracks, space), tracks, space)
     for change in (_merge_closest, _split_widest):
         while (labels := change(points, best[1], space)) is not None:
-            candidate = _fit(points, labels, space)
+            candidate = _fit(points, labels, tracks, space)
             if candidate[0] >= best[0]:
                 break
             best = candidate
@@ -47,15 +48,14 @@ def fit_mixture(points: FloatArray, tracks: NDArray[np.int64], space: type[Featu
 
 def _modes(points: FloatArray, tracks: NDArray[np.int64], space: type[FeatureSpace]) -> NDArray[np.int64]:
     """Label points by average-linkage clustering of the tracks' means, cut at the space's resolution, (n,)."""
-    _, track_of_point = np.unique(tracks, return_inverse=True)
-    sizes = np.bincount(track_of_point)
+    sizes = np.bincount(tracks)
     sums = np.zeros((len(sizes), points.shape[1]))
-    np.add.at(sums, track_of_point, points)
+    np.add.at(sums, tracks, points)
     means = sums / sizes[:, None]
     if len(means) == 1:
         return np.zeros(len(points), dtype=np.int64)
     labels = fcluster(linkage(means, "average"), space.resolution, "distance")
-    return np.asarray(labels[track_of_point], dtype=np.int64)
+    return np.asarray(labels[tracks], dtype=np.int64)
 
 
 def _component(points: FloatArray, space: type[FeatureSpace], least: float) -> Gaussian:
@@ -68,8 +68,14 @@ def _component(points: FloatArray, space: type[FeatureSpace], least: float) -> G
     return Gaussian(mean, covariance + least**2 * np.eye(space.dimension), float(len(points)))
 
 
-def _fit(points: FloatArray, labels: NDArray[np.int64], space: type[FeatureSpace]) -> tuple[float, NDArray[np.int64]]:
-    """Run EM from a labelling; return BIC and the most likely component of each point, (n,)."""
+def _fit(
+    points: FloatArray, labels: NDArray[np.int64], tracks: NDArray[np.int64], space: type[FeatureSpace]
+) -> tuple[float, NDArray[np.int64]]:
+    """Run EM from a labelling; return BIC and the most likely component of each point, (n,).
+
+    All values of a track are of one thing, so they go to one component: the likeliest for all of them together.
+    Else a component split in vain would leave two halves of a noise cloud, which look like two new concepts.
+    """
     start = [_component(points[labels == label], space, space.grain) for label in np.unique(labels)]
     if len(start) > len(points) or (len(start) == 1 and len(points) == 1):
         return np.inf, labels
@@ -94,8 +100,10 @@ def _fit(points: FloatArray, labels: NDArray[np.int64], space: type[FeatureSpace
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)
-        assigned = model.fit_predict(points)
-    return float(model.bic(points)), np.asarray(assigned, dtype=np.int64)
+        model.fit(points)
+    likelihood = np.zeros((int(tracks.max()) + 1, len(start)))
+    np.add.at(likelihood, tracks, np.log(model.predict_proba(points) + np.finfo(np.float64).tiny))
+    return float(model.bic(points)), np.argmax(likelihood, axis=1)[tracks]
 
 
 def _merge_closest(

@@ -127,10 +127,10 @@ class Distance(FeatureSpace):
 
     name = "distance"
     dimension = 1
-    grain = 0.012
+    grain = 0.006
     floor = 0.008
     resolution = 0.018
-    correlation = 0.3
+    correlation = 0.5
 
     @staticmethod
     def embed(values: FloatArray) -> FloatArray:
