@@ -1,0 +1,123 @@
+"""A recorded demo in memory."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.pose import FloatArray
+from twin.scene_spec import SceneSpec
+
+from .gamepad import GamepadState
+from .gamepad_mapping import GamepadMapping
+
+
+@dataclass(frozen=True, slots=True)
+class InputTrack:
+    """What the gamepad said at each of K control steps.
+
+    Attributes:
+        axes: (K, 4).
+        buttons: (K, 17).
+    """
+
+    axes: FloatArray
+    buttons: FloatArray
+
+    def __len__(self) -> int:
+        """Number of control steps, K."""
+        return len(self.axes)
+
+    def gamepad(self, step: int) -> GamepadState:
+        """The state of the gamepad at a control step."""
+        return GamepadState(tuple(self.axes[step].tolist()), tuple(self.buttons[step].tolist()))
+
+
+@dataclass(frozen=True, slots=True)
+class CommandTrack:
+    """What was asked for and executed at each of K control steps.
+
+    Attributes:
+        asked: Twists along the axes of the world, (K, 6) [m/s, rad/s].
+        executed: The same after all limits, (K, 6).
+        joint_velocity: Executed joint velocities, (K, n) [rad/s].
+        gripper_opening: Wanted gap between the fingers, (K,) [m].
+        reasons: Why asked and executed differ, K texts; empty where they agree.
+    """
+
+    asked: FloatArray
+    executed: FloatArray
+    joint_velocity: FloatArray
+    gripper_opening: FloatArray
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class StateTrack:
+    """True states of the world at T moments, for replay and scoring.
+
+    Attributes:
+        steps: Control step before which each state was taken, (T,).
+        times: Simulated times, (T,) [s].
+        q: Driven joint positions, (T, n) [rad].
+        dq: Driven joint velocities, (T, n) [rad/s].
+        tool: Tool frame in the world: position [m] and quaternion xyzw, (T, 7).
+        gripper_opening: Measured gap between the fingers, (T,) [m].
+        gripper_closed: Whether the gripper was told to close, (T,).
+        held: Id of the object between the fingers, -1 for none, (T,).
+        object_ids: Ids of the N objects, (N,).
+        object_positions: Centres in the world, (T, N, 3) [m].
+        object_orientations: Quaternions xyzw, (T, N, 4).
+    """
+
+    steps: NDArray[np.int64]
+    times: FloatArray
+    q: FloatArray
+    dq: FloatArray
+    tool: FloatArray
+    gripper_opening: FloatArray
+    gripper_closed: NDArray[np.bool_]
+    held: NDArray[np.int64]
+    object_ids: NDArray[np.int64]
+    object_positions: FloatArray
+    object_orientations: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Demo:
+    """One recorded episode; all arrays are read-only.
+
+    Attributes:
+        path: The file it was read from.
+        scene: What the scene was made of; the demo starts from it.
+        mapping: How the gamepad was mapped to twists.
+        rate: Control steps a second [Hz].
+        utterances: The sentences that describe it.
+        states: True states at 30 Hz.
+        inputs: Gamepad at the control rate.
+        commands: Commands at the control rate.
+        versions: Versions of the software that recorded it, by distribution.
+        complete: False where the file ends early (a crash, a full disk); all that was recovered is here.
+    """
+
+    path: Path
+    scene: SceneSpec
+    mapping: GamepadMapping
+    rate: int
+    utterances: tuple[str, ...]
+    states: StateTrack
+    inputs: InputTrack
+    commands: CommandTrack
+    versions: dict[str, str]
+    complete: bool
+
+    @property
+    def times(self) -> FloatArray:
+        """Times of the states, (T,) [s]."""
+        return self.states.times
+
+    @property
+    def duration(self) -> float:
+        """Time between the first and the last state [s]."""
+        return float(self.states.times[-1] - self.states.times[0])
