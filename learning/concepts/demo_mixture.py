@@ -5,16 +5,19 @@ import warnings
 import numpy as np
 from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, linkage
+from sklearn import config_context
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.mixture import GaussianMixture
 
 from learning.concepts.feature_space import FeatureSpace
-from learning.concepts.gaussian import Gaussian
+from learning.concepts.gaussian import Gaussian, squared_mahalanobis
 from robots.pose import FloatArray
 
 MAX_ITERATIONS = 20
 TOLERANCE = 1e-2
 """EM stops when the mean log likelihood rises by less: BIC moves by n times that, its penalty by some dozens."""
+LEAST_LOG_SHARE = -700.0
+"""No single value rules a component out for its track by more than this."""
 
 
 def fit_mixture(points: FloatArray, tracks: NDArray[np.int64], space: type[FeatureSpace]) -> tuple[Gaussian, ...]:
@@ -98,12 +101,40 @@ def _fit(
         precisions_init=precisions,
         random_state=0,
     )
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), config_context(assume_finite=True, skip_parameter_validation=True):
         warnings.simplefilter("ignore", ConvergenceWarning)
         model.fit(points)
+    joint = _log_joint(points, model)
+    top = joint.max(axis=1, keepdims=True)
+    log_density = top[:, 0] + np.log(np.sum(np.exp(joint - top), axis=1))
+    bic = _parameters(kind, len(start), space.dimension) * np.log(len(points)) - 2.0 * float(log_density.sum())
     likelihood = np.zeros((int(tracks.max()) + 1, len(start)))
-    np.add.at(likelihood, tracks, np.log(model.predict_proba(points) + np.finfo(np.float64).tiny))
-    return float(model.bic(points)), np.argmax(likelihood, axis=1)[tracks]
+    np.add.at(likelihood, tracks, np.maximum(joint - log_density[:, None], LEAST_LOG_SHARE))
+    return bic, np.argmax(likelihood, axis=1)[tracks]
+
+
+def _log_joint(points: FloatArray, model: GaussianMixture) -> FloatArray:
+    """Log of weight times density of every point in every component, (n, K)."""
+    components, dimension = model.means_.shape
+    precisions = np.asarray(model.precisions_)
+    if model.covariance_type == "diag":
+        precisions = precisions[:, :, None] * np.eye(dimension)
+    precisions = np.broadcast_to(precisions, (components, dimension, dimension))
+    _, log_determinant = np.linalg.slogdet(precisions)
+    squared = squared_mahalanobis(points, model.means_, precisions)
+    return np.asarray(
+        np.log(model.weights_) + 0.5 * (log_determinant - dimension * np.log(2.0 * np.pi)) - 0.5 * squared
+    )
+
+
+def _parameters(kind: str, components: int, dimension: int) -> int:
+    """Free parameters of a mixture: means, covariances and weights."""
+    covariance = {
+        "tied": dimension * (dimension + 1) // 2,
+        "diag": components * dimension,
+        "full": components * dimension * (dimension + 1) // 2,
+    }[kind]
+    return components * dimension + covariance + components - 1
 
 
 def _merge_closest(

@@ -13,9 +13,13 @@ part of every covariance, is known rather than estimated: it counts as a prior w
 a place seen for a frame or two, whose spread nobody can estimate, would equal any other.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.special import chdtrc, fdtrc
 
+from learning.concepts.gaussian import Gaussian
 from robots.pose import FloatArray
 
 SHAPE_CORRELATION = 0.05
@@ -25,14 +29,44 @@ PRIOR_VALUES = 40
 """What the covariance floor is worth in the degrees of freedom of the pooled covariance."""
 
 
+@dataclass(frozen=True, slots=True)
+class Statistics:
+    """What is known of K components, stacked.
+
+    Attributes:
+        means: (K, d).
+        covariances: (K, d, d).
+        precisions: Inverse covariances, (K, d, d).
+        counts: Numbers of values, (K,).
+        demos: Numbers of demos, (K,).
+    """
+
+    means: FloatArray
+    covariances: FloatArray
+    precisions: FloatArray
+    counts: FloatArray
+    demos: FloatArray
+
+    @classmethod
+    def of(cls, components: Sequence[Gaussian]) -> "Statistics":
+        """Stack at least one component."""
+        covariances = np.array([component.covariance for component in components])
+        return cls(
+            np.array([component.mean for component in components]),
+            covariances,
+            np.linalg.inv(covariances),
+            np.array([component.count for component in components], dtype=np.float64),
+            np.array([component.demos for component in components], dtype=np.float64),
+        )
+
+
 def effective_size(count: FloatArray, demos: FloatArray, correlation: float) -> FloatArray:
     """Effective number of independent values of `count` values from `demos` demos."""
-    count, demos = np.asarray(count, dtype=np.float64), np.asarray(demos, dtype=np.float64)
     return np.asarray(count / (1.0 + np.maximum(count / demos - 1.0, 0.0) * correlation))
 
 
-def covariance_p_value(covariance: FloatArray, others: FloatArray, size: FloatArray, diagonal: bool) -> FloatArray:
-    """P-value of the W statistic (Ledoit and Wolf 2002) that `covariance` equals each of `others`.
+def covariance_p_values(new: Statistics, old: Statistics, diagonal: bool) -> FloatArray:
+    """P-values of the W statistic (Ledoit and Wolf 2002) that covariances are equal.
 
     W = tr((S - I)^2) / d - (d / n) (tr(S) / d)^2 + d / n with S the covariance whitened by the other; n d W / 2 is
     chi-squared with d (d + 1) / 2 degrees of freedom. Of diagonal covariances only the d variances are compared.
@@ -42,67 +76,82 @@ def covariance_p_value(covariance: FloatArray, others: FloatArray, size: FloatAr
     smaller p-value counts.
 
     Args:
-        covariance: Of the new component, (d, d).
-        others: Of the old components, (K, d, d).
-        size: Effective sample size of each comparison, (K,).
-        diagonal: Whether the covariances are diagonal.
+        new: Statistics of A components.
+        old: Statistics of K components.
+        diagonal: Whether their covariances are diagonal.
 
     Returns:
-        (K,) in 0..1.
+        (A, K) in 0..1.
     """
-    if diagonal:
-        ratios = np.diag(covariance) / np.diagonal(others, axis1=1, axis2=2)
-    else:
-        # Eigenvalues of A^-1 C are those of the whitened covariance L^-1 C L^-T, where A = L L^T.
-        ratios = np.real(np.linalg.eigvals(np.linalg.solve(others, np.broadcast_to(covariance, others.shape))))
-    return np.minimum(_w_p_value(ratios, size, diagonal), _w_p_value(1.0 / ratios, size, diagonal))
+    size = _harmonic(
+        effective_size(new.counts, new.demos, SHAPE_CORRELATION), effective_size(old.counts, old.demos, SHAPE_CORRELATION)
+    )
+    return np.minimum(
+        _w_p_values(new.covariances, old.precisions, size, diagonal),
+        _w_p_values(old.covariances, new.precisions, size.T, diagonal).T,
+    )
 
 
-def _w_p_value(eigenvalues: FloatArray, size: FloatArray, diagonal: bool) -> FloatArray:
-    """P-value of W from the eigenvalues (K, d) of the whitened covariances."""
-    dimension = eigenvalues.shape[1]
-    squares = np.sum((eigenvalues - 1.0) ** 2, axis=1)
-    if diagonal:
-        return np.asarray(chdtrc(float(dimension), 0.5 * size * squares))
-    w = squares / dimension - dimension / size * (eigenvalues.mean(axis=1) ** 2 - 1.0)
-    return np.asarray(chdtrc(dimension * (dimension + 1) / 2.0, np.maximum(0.5 * size * dimension * w, 0.0)))
+def mean_p_values(new: Statistics, old: Statistics, correlation: float, diagonal: bool) -> FloatArray:
+    """P-values of Hotelling's two-sample T-squared that means are equal.
 
-
-def mean_p_value(
-    mean: FloatArray,
-    covariance: FloatArray,
-    count: float,
-    size: float,
-    other_means: FloatArray,
-    other_covariances: FloatArray,
-    other_counts: FloatArray,
-    other_sizes: FloatArray,
-) -> FloatArray:
-    """P-value of Hotelling's two-sample T-squared that `mean` equals each of `other_means`.
-
-    The pooled covariance has the degrees of freedom of the values seen; the means are as sure as the effective
-    sizes say.
+    The pooled covariance has the degrees of freedom of the values seen; the means are as sure as the effective sizes
+    say.
 
     Args:
-        mean: Of the new component, (d,).
-        covariance: Of the new component, (d, d).
-        count: Number of its values.
-        size: Its effective size.
-        other_means: (K, d).
-        other_covariances: (K, d, d).
-        other_counts: (K,).
-        other_sizes: (K,).
+        new: Statistics of A components.
+        old: Statistics of K components.
+        correlation: Intraclass correlation of their feature space.
+        diagonal: Whether their covariances are diagonal.
 
     Returns:
-        (K,) in 0..1.
+        (A, K) in 0..1.
     """
-    dimension = mean.shape[0]
-    difference = mean - other_means
-    total = count + other_counts
-    pooled = (count * covariance + other_counts[:, None, None] * other_covariances) / total[:, None, None]
-    scaled = np.linalg.solve(pooled, difference[:, :, None])[:, :, 0]
-    harmonic = size * other_sizes / (size + other_sizes)
-    t_squared = harmonic * np.einsum("kd,kd->k", difference, scaled)
+    dimension = new.means.shape[1]
+    difference = new.means[:, None] - old.means[None]
+    total = new.counts[:, None] + old.counts[None]
+    share = (new.counts[:, None] / total)[..., None]
+    if diagonal:
+        variances_new, variances_old = (np.diagonal(one.covariances, axis1=1, axis2=2) for one in (new, old))
+        pooled = share * variances_new[:, None] + (1.0 - share) * variances_old[None]
+        distance = np.sum(difference**2 / pooled, axis=2)
+    else:
+        share = share[..., None]
+        pooled = share * new.covariances[:, None] + (1.0 - share) * old.covariances[None]
+        distance = np.sum(difference * np.linalg.solve(pooled, difference[..., None])[..., 0], axis=2)
+    size = _harmonic(
+        effective_size(new.counts, new.demos, correlation), effective_size(old.counts, old.demos, correlation)
+    )
     freedom = total - 2.0 + PRIOR_VALUES
-    f_statistic = t_squared * (freedom - dimension + 1.0) / (freedom * dimension)
+    f_statistic = size * distance * (freedom - dimension + 1.0) / (freedom * dimension)
     return np.asarray(fdtrc(float(dimension), freedom - dimension + 1.0, f_statistic))
+
+
+def mean_log_likelihoods(new: Statistics, old: Statistics) -> FloatArray:
+    """Mean log likelihood of each new component's values under each old one, (A, K), from the statistics alone."""
+    difference = new.means[:, None] - old.means[None]
+    squared = np.einsum("aki,kij,akj->ak", difference, old.precisions, difference, optimize=True)
+    spread = np.einsum("kij,aji->ak", old.precisions, new.covariances)
+    _, log_determinant = np.linalg.slogdet(old.covariances)
+    constant = new.means.shape[1] * np.log(2.0 * np.pi) + log_determinant
+    return np.asarray(-0.5 * (constant + spread + squared))
+
+
+def _harmonic(new: FloatArray, old: FloatArray) -> FloatArray:
+    """n1 n2 / (n1 + n2) of all pairs, (A, K): the size of a difference between two estimates."""
+    return np.asarray(new[:, None] * old[None] / (new[:, None] + old[None]))
+
+
+def _w_p_values(covariances: FloatArray, precisions: FloatArray, size: FloatArray, diagonal: bool) -> FloatArray:
+    """P-values of W of covariances (A, d, d) whitened by precisions (K, d, d), (A, K)."""
+    dimension = covariances.shape[1]
+    if diagonal:
+        variances = np.diagonal(covariances, axis1=1, axis2=2)
+        ratios = variances[:, None] * np.diagonal(precisions, axis1=1, axis2=2)[None]
+        return np.asarray(chdtrc(float(dimension), 0.5 * size * np.sum((ratios - 1.0) ** 2, axis=2)))
+    whitened = precisions[None] @ covariances[:, None]  # has the traces of L^-1 C L^-T, where precision^-1 = L L^T
+    trace = np.trace(whitened, axis1=2, axis2=3)
+    trace_of_square = np.sum(whitened * np.swapaxes(whitened, 2, 3), axis=(2, 3))
+    w = (trace_of_square - 2.0 * trace + dimension) / dimension
+    w -= dimension / size * ((trace / dimension) ** 2 - 1.0)
+    return np.asarray(chdtrc(dimension * (dimension + 1) / 2.0, np.maximum(0.5 * size * dimension * w, 0.0)))

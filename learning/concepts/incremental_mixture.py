@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.concepts.equality_tests import (
-    SHAPE_CORRELATION,
-    covariance_p_value,
-    effective_size,
-    mean_p_value,
+    Statistics,
+    covariance_p_values,
+    mean_log_likelihoods,
+    mean_p_values,
 )
 from learning.concepts.feature_space import FeatureSpace
 from learning.concepts.gaussian import Gaussian, merged, squared_mahalanobis, stacked
@@ -73,8 +73,14 @@ class IncrementalMixture:
         Returns:
             The concept number that each component became part of.
         """
-        old = dict(self._components)
-        matches = [self._most_likely_equivalent(component, old) for component in components]
+        if not components:
+            return []
+        matches: list[int | None] = [None] * len(components)
+        if self._components:
+            known = list(self._components)
+            likelihood = self._equivalents(components, list(self._components.values()))
+            # Line 14: ties are broken by the likelihood of the new values.
+            matches = [known[int(np.argmax(row))] if np.any(row > -np.inf) else None for row in likelihood]
         numbers: list[int] = []
         seen: set[int] = set()
         for component, match in zip(components, matches, strict=True):
@@ -171,63 +177,28 @@ class IncrementalMixture:
             return component
         return Gaussian(component.mean, np.diag(np.diag(component.covariance)), component.count, component.demos)
 
-    def _most_likely_equivalent(self, component: Gaussian, among: Mapping[int, Gaussian]) -> int | None:
-        """The component that passes both tests, ties broken by the likelihood of the new values (lines 8 to 14)."""
-        if not among:
-            return None
-        numbers = list(among)
-        others = list(among.values())
-        means, covariances = stacked(others, self.space.dimension)
-        counts = np.array([other.count for other in others])
-        demos = np.array([other.demos for other in others], dtype=np.float64)
-        own_count, own_demos = np.array(component.count), np.array(component.demos)
-        spread_size = effective_size(own_count, own_demos, SHAPE_CORRELATION)
-        other_spread_size = effective_size(counts, demos, SHAPE_CORRELATION)
-        same_covariance = covariance_p_value(
-            component.covariance,
-            covariances,
-            spread_size * other_spread_size / (spread_size + other_spread_size),
-            self.space.diagonal,
-        )
-        same_mean = mean_p_value(
-            component.mean,
-            component.covariance,
-            component.count,
-            float(effective_size(own_count, own_demos, self.space.correlation)),
-            means,
-            covariances,
-            counts,
-            effective_size(counts, demos, self.space.correlation),
-        )
-        passed = (same_covariance > SIGNIFICANCE) & (same_mean > SIGNIFICANCE)
-        if not np.any(passed):
-            return None
-        likelihood = _mean_log_likelihood(component, means, covariances)
-        return numbers[int(np.argmax(np.where(passed, likelihood, -np.inf)))]
+    def _equivalents(self, new: Sequence[Gaussian], old: Sequence[Gaussian]) -> FloatArray:
+        """Log likelihood of each old component for the values of each new one, -inf unless both tests pass, (A, K)."""
+        first, second = Statistics.of(new), Statistics.of(old)
+        passed = covariance_p_values(first, second, self.space.diagonal) > SIGNIFICANCE
+        passed &= mean_p_values(first, second, self.space.correlation, self.space.diagonal) > SIGNIFICANCE
+        return np.where(passed, mean_log_likelihoods(first, second), -np.inf)
 
     def _merge_equivalent(self, changed: set[int]) -> None:
         """Line 21: merge equivalent components. Pairs in which nothing changed were tested before."""
-        queue = sorted(changed)
-        while queue:
-            number = queue.pop(0)
-            if number not in self._components:
-                continue
-            rest = {other: component for other, component in self._components.items() if other != number}
-            match = self._most_likely_equivalent(self._components[number], rest)
-            if match is None:
-                continue
+        # Two components that changed may both be of this demo: together they are one sighting more, not two.
+        while changed:
+            numbers, rows = list(self._components), sorted(changed)
+            components = list(self._components.values())
+            likelihood = self._equivalents([self._components[number] for number in rows], components)
+            likelihood[np.arange(len(rows)), [numbers.index(number) for number in rows]] = -np.inf
+            row, column = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
+            if likelihood[row, column] == -np.inf:
+                return
+            number, match = rows[row], numbers[column]
             kept, gone = min(number, match), max(number, match)
             first, second = self._components[kept], self._components.pop(gone)
-            demos = max(first.demos, second.demos) if gone in changed and kept in changed else first.demos + second.demos
-            self._components[kept] = self._shaped(merged(first, second, demos))
+            shared = 1 if gone in changed and kept in changed else 0
+            self._components[kept] = self._shaped(merged(first, second, first.demos + second.demos - shared))
             self._aliases[gone] = kept
-            queue.append(kept)
-
-
-def _mean_log_likelihood(component: Gaussian, means: FloatArray, covariances: FloatArray) -> FloatArray:
-    """Mean log likelihood of a component's values under each other component, (K,), from its statistics alone."""
-    precisions = np.linalg.inv(covariances)
-    _, log_determinant = np.linalg.slogdet(covariances)
-    squared = squared_mahalanobis(component.mean[None, :], means, precisions)[0]
-    spread = np.einsum("kij,ji->k", precisions, component.covariance)
-    return np.asarray(-0.5 * (component.mean.shape[0] * np.log(2.0 * np.pi) + log_determinant + spread + squared))
+            changed = (changed - {gone}) | {kept}
