@@ -1,0 +1,18 @@
+"""The known action graphlets as the chart needs them: who holds what before and after, and what follows what."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class ActionTable:
+    """Properties of action graphlets by their numbers.
+
+    Attributes:
+        starts_held: Whether the object is in the gripper when the action starts.
+        ends_held: Whether it is there when the action ends.
+        composed: Number of the known graphlet that two in a row amount to.
+    """
+
+    starts_held: dict[int, bool]
+    ends_held: dict[int, bool]
+    composed: dict[tuple[int, int], int]

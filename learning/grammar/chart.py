@@ -1,0 +1,386 @@
+"""Bottom-up chart (CKY) over a sentence and a scene: substitute, group, query (thesis 5.3, algorithm 1).
+
+An item is an RCL element over a span of words together with what it denotes in the scene. Items of the same element,
+the same children and the same denotation differ only in how they came about, so of these the most probable alone is
+kept (Viterbi). An element that denotes nothing in the scene is dropped at once. Words that carry no concept are passed
+over at the cost of their probability of being function words.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, REFERENCE_SPACE, RELATION_SPACES, Concept
+from learning.grammar.actions import ActionTable
+from learning.grammar.pcfg import Pcfg
+from learning.grammar.preferences import Preferences, rule_feature
+from learning.grammar.rcl import RclNode
+from learning.grammar.scene import SceneSets
+
+MAX_GAP = 5
+"""Most words that are passed over between two elements."""
+BEAM = 12
+"""Items kept of one kind of element over one span."""
+ROOT_BEAM = 30
+"""The same for events and sequences, whose readings are compared with one another."""
+SETTLED = 40.0
+"""Sightings of an element after which orders of its children that were never seen are no longer tried."""
+
+PROPERTIES = frozenset((*OBJECT_SPACES, REFERENCE_SPACE))
+EVENT_PARTS = ("action", "entity", "destination")
+
+
+@dataclass(frozen=True, slots=True)
+class LexicalEntry:
+    """One way to read a span of words: a concept and its log probability."""
+
+    first: int
+    after: int
+    concept: Concept
+    log_probability: float
+
+
+@dataclass(slots=True)
+class Item:
+    """An element over the words [first, after) that denotes objects and places (bit masks) in the scene."""
+
+    label: str
+    parts: tuple[str, ...]
+    first: int
+    after: int
+    objects: int
+    places: int
+    action: int
+    score: float
+    children: tuple["Item", ...]
+    concept: Concept | None = None
+
+    def tree(self) -> RclNode:
+        """Build the RCL node of this item."""
+        return RclNode(
+            self.label, self.concept, self.first + 1, self.after, tuple(child.tree() for child in self.children)
+        )
+
+    def leaves(self) -> list["Item"]:
+        """List the lexical items from left to right."""
+        if self.concept is not None:
+            return [self]
+        return [leaf for child in self.children for leaf in child.leaves()]
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A reading of a whole sentence: what it would do in the scene.
+
+    Attributes:
+        item: Root item (`event` or `sequence`).
+        action: Number of the action graphlet that is carried out, a sequence counted as the action it composes to.
+        moved: Objects it may be about, as a mask.
+        places: Placements it may end at, as a mask; 0 when it ends in the gripper.
+        score: Log probability.
+    """
+
+    item: Item
+    action: int
+    moved: int
+    places: int
+    score: float
+
+    @property
+    def moves(self) -> int:
+        """How many different moves the reading allows."""
+        return self.moved.bit_count() * max(1, self.places.bit_count())
+
+
+class Chart:
+    """All readings of one sentence in one scene."""
+
+    def __init__(
+        self,
+        n_words: int,
+        entries: Sequence[LexicalEntry],
+        skip: Sequence[float],
+        grammar: Pcfg,
+        scene: SceneSets,
+        actions: ActionTable,
+        preferences: Preferences,
+        beam: int = BEAM,
+    ) -> None:
+        """Fill the chart.
+
+        Args:
+            n_words: Number of words.
+            entries: Lexical entries.
+            skip: Log probability of passing over each word, (n_words,).
+            grammar: Π, for the weights of rules.
+            scene: What concepts are true of.
+            actions: The known action graphlets.
+            preferences: Weights of rules beside their probabilities.
+            beam: Items kept of one kind of element over one span.
+        """
+        self.n_words = n_words
+        self.grammar = grammar
+        self.scene = scene
+        self.actions = actions
+        self.preferences = preferences
+        self.beam = beam
+        self._skipped = [0.0]
+        for cost in skip:
+            self._skipped.append(self._skipped[-1] + cost)
+        self._cells: dict[tuple[int, int], list[Item]] = {}
+        self._by_first: list[list[tuple[int, list[Item]]]] = [[] for _ in range(n_words + 1)]
+        self._weights: dict[tuple[str, tuple[str, ...]], float] = {}
+        lexical: dict[tuple[int, int], list[Item]] = {}
+        for entry in entries:
+            item = self._lexical_item(entry)
+            if item is not None:
+                lexical.setdefault((entry.first, entry.after), []).append(item)
+        for width in range(1, n_words + 1):
+            for first in range(n_words - width + 1):
+                self._fill(first, first + width, lexical.get((first, first + width), []))
+
+    def readings(self) -> list[Reading]:
+        """Give the readings of the whole sentence, most probable first, one for each action, object set and place set."""
+        best: dict[tuple[int, int, int], Reading] = {}
+        for (first, after), cell in self._cells.items():
+            around = self._skipped[first] + self._skipped[self.n_words] - self._skipped[after]
+            for item in cell:
+                if item.label not in ("event", "sequence"):
+                    continue
+                outcome = self._outcome(item)
+                if outcome is None:
+                    continue
+                score = item.score + around + self._weight("command", (item.label,))
+                known = best.get(outcome)
+                if known is None or known.score < score:
+                    best[outcome] = Reading(item, *outcome, score)
+        return sorted(best.values(), key=lambda reading: -reading.score)
+
+    def _weight(self, left: str, right: tuple[str, ...]) -> float:
+        key = (left, right)
+        weight = self._weights.get(key)
+        if weight is None:
+            weight = self._weights[key] = self.grammar.log_weight(left, right) + self.preferences.of(
+                rule_feature(left, right)
+            )
+        return weight
+
+    def _lexical_item(self, entry: LexicalEntry) -> Item | None:
+        concept, scene = entry.concept, self.scene
+        objects = places = 0
+        action = -1
+        if concept.space in OBJECT_SPACES:
+            objects, places = scene.objects.get(concept, 0), scene.places.get(concept, 0)
+            if not objects and not places:
+                return None
+        elif concept.space == REFERENCE_SPACE:
+            objects = scene.all_objects
+        elif concept.space == ACTION_SPACE:
+            action = concept.number
+        return Item(
+            concept.space, (), entry.first, entry.after, objects, places, action, entry.log_probability, (), concept
+        )
+
+    def _fill(self, first: int, after: int, lexical: list[Item]) -> None:
+        found: dict[tuple[str, tuple[str, ...], int, int, int], Item] = {}
+        for item in lexical:
+            _keep(found, item)
+        for middle in range(first + 1, after):
+            left_cell = self._cells.get((first, middle))
+            if not left_cell:
+                continue
+            for start in range(middle, min(middle + MAX_GAP, after - 1) + 1):
+                right_cell = self._cells.get((start, after))
+                if right_cell:
+                    gap = self._skipped[start] - self._skipped[middle]
+                    for left in left_cell:
+                        for right in right_cell:
+                            self._join(found, left, right, gap)
+        if not found:
+            return
+        self._close(found)
+        self._cells[first, after] = self._prune(found)
+
+    def _prune(self, found: Mapping[object, Item]) -> list[Item]:
+        kept: list[Item] = []
+        counts: dict[str, int] = {}
+        for item in sorted(found.values(), key=lambda item: -item.score):
+            kind = item.label
+            if counts.get(kind, 0) < (ROOT_BEAM if kind in ("event", "sequence", "event*") else self.beam):
+                counts[kind] = counts.get(kind, 0) + 1
+                kept.append(item)
+        return kept
+
+    def _allowed(self, label: str, parts: tuple[str, ...], usual: bool) -> bool:
+        """Whether to try an order of children: the usual ones, those seen, and all until the element has settled."""
+        return usual or self.grammar.seen_start(label, parts) or self.grammar.total(label) < SETTLED
+
+    def _join(
+        self, found: dict[tuple[str, tuple[str, ...], int, int, int], Item], left: Item, right: Item, gap: float
+    ) -> None:
+        score = left.score + right.score + gap
+        match left.label:
+            case "entity*":
+                kind = right.label
+                if kind in left.parts or "reference" in left.parts or kind == "reference":
+                    return
+                if kind not in OBJECT_SPACES and kind != "spatial-relation":
+                    return
+                objects = left.objects & right.objects
+                if objects:
+                    item = Item(
+                        "entity*", (*left.parts, kind), left.first, right.after, objects, 0, -1, score,
+                        (*left.children, right),
+                    )  # fmt: skip
+                    _keep(found, item)
+            case "direction" | "distance":
+                if right.label == "entity" and left.concept is not None and "reference" not in right.parts:
+                    self._relate(found, left.concept, right, (left, right), score)
+            case "entity":
+                if right.label in RELATION_SPACES and right.concept is not None and "reference" not in left.parts:
+                    if self._allowed("spatial-relation", ("entity", right.label), usual=False):
+                        self._relate(found, right.concept, left, (left, right), score)
+            case "event*":
+                if right.label in EVENT_PARTS and right.label not in left.parts:
+                    self._extend_event(found, left, right, score)
+            case "event":
+                if right.label == "event":
+                    self._sequence(found, left, right, score)
+            case _:
+                return
+
+    def _relate(
+        self,
+        found: dict[tuple[str, tuple[str, ...], int, int, int], Item],
+        relation: Concept,
+        ground: Item,
+        children: tuple[Item, Item],
+        score: float,
+    ) -> None:
+        objects, places = self.scene.related(relation, ground.objects)
+        if not objects and not places:
+            return
+        parts = (children[0].label, children[1].label)
+        score += self._weight("spatial-relation", parts)
+        item = Item(
+            "spatial-relation", parts, children[0].first, children[1].after, objects, places, -1, score, children
+        )
+        _keep(found, item)
+
+    def _extend_event(
+        self, found: dict[tuple[str, tuple[str, ...], int, int, int], Item], left: Item, right: Item, score: float
+    ) -> None:
+        parts = (*left.parts, right.label)
+        if right.label != "action" and parts[0] != "action" and "action" in parts:
+            return  # an imperative begins or ends with its action: in between, two clauses would pass for one
+        if not self._allowed(
+            "event",
+            parts,
+            usual=parts in (("action", "entity"), ("action", "entity", "destination"), ("action", "destination")),
+        ):
+            return
+        objects = right.objects if right.label == "entity" else left.objects
+        places = right.places if right.label == "destination" else left.places
+        action = right.action if right.label == "action" else left.action
+        item = Item("event*", parts, left.first, right.after, objects, places, action, score, (*left.children, right))
+        _keep(found, item)
+
+    def _sequence(
+        self, found: dict[tuple[str, tuple[str, ...], int, int, int], Item], left: Item, right: Item, score: float
+    ) -> None:
+        action = self.actions.composed.get((left.action, right.action))
+        if action is None or "entity" not in left.parts or left.places:
+            return
+        objects = left.objects & right.objects if "entity" in right.parts else left.objects
+        if not objects or not right.places:
+            return
+        score += self._weight("sequence", ("event", "event"))
+        item = Item(
+            "sequence", ("event", "event"), left.first, right.after, objects, right.places, action, score, (left, right)
+        )
+        _keep(found, item)
+
+    def _close(self, found: dict[tuple[str, tuple[str, ...], int, int, int], Item]) -> None:
+        """Apply unary steps: begin and complete entities, destinations and events."""
+        for item in list(found.values()):
+            if item.label in PROPERTIES and item.objects:
+                start = Item("entity*", (item.label,), item.first, item.after, item.objects, 0, -1, item.score, (item,))
+                _keep(found, start)
+            if item.label in ("location", "spatial-relation") and item.places:
+                score = item.score + self._weight("destination", (item.label,))
+                end = Item("destination", (item.label,), item.first, item.after, 0, item.places, -1, score, (item,))
+                _keep(found, end)
+        for item in list(found.values()):
+            if item.label == "entity*":
+                score = item.score + self._weight("entity", item.parts)
+                _keep(
+                    found, Item("entity", item.parts, item.first, item.after, item.objects, 0, -1, score, item.children)
+                )
+        for item in list(found.values()):
+            if item.label in EVENT_PARTS and self._allowed("event", (item.label,), usual=item.label == "action"):
+                _keep(
+                    found,
+                    Item(
+                        "event*",
+                        (item.label,),
+                        item.first,
+                        item.after,
+                        item.objects,
+                        item.places,
+                        item.action,
+                        item.score,
+                        (item,),
+                    ),
+                )
+        for item in list(found.values()):
+            if item.label == "event*" and "action" in item.parts and len(item.parts) > 1:
+                score = item.score + self._weight("event", item.parts)
+                _keep(
+                    found,
+                    Item(
+                        "event",
+                        item.parts,
+                        item.first,
+                        item.after,
+                        item.objects,
+                        item.places,
+                        item.action,
+                        score,
+                        item.children,
+                    ),
+                )
+
+    def _outcome(self, item: Item) -> tuple[int, int, int] | None:
+        """Give action, movable objects and free places of a root item; None when the scene does not allow it."""
+        action, scene = item.action, self.scene
+        has_destination = item.label == "sequence" or "destination" in item.parts
+        if item.label == "event" and "entity" not in item.parts:
+            return None
+        starts_held = item.label == "event" and self.actions.starts_held[action]
+        ends_held = item.label == "event" and self.actions.ends_held[action]
+        moved = item.objects & (scene.held if starts_held else scene.clear & ~scene.held)
+        if not moved:
+            return None
+        if ends_held:
+            return None if has_destination else (action, moved, 0)
+        places = item.places & scene.usable_places
+        if not has_destination:
+            if not starts_held or scene.percept.held is None:
+                return None
+            # A block that is let go without a word about where falls straight down.
+            places = 1 << scene.column_of[scene.percept.held]
+        elif moved.bit_count() == 1:
+            places &= ~(1 << scene.column_of[moved.bit_length() - 1]) if not starts_held else places
+        return (action, moved, places) if places else None
+
+
+def _keep(found: dict[tuple[str, tuple[str, ...], int, int, int], Item], item: Item) -> None:
+    key = (
+        item.label,
+        item.parts,
+        item.objects,
+        item.places,
+        item.action if item.concept is None else hash(item.concept),
+    )
+    known = found.get(key)
+    if known is None or known.score < item.score:
+        found[key] = item

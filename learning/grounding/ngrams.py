@@ -1,0 +1,24 @@
+"""Words and n-grams of an utterance (thesis 4.2)."""
+
+import re
+
+MAX_N = 3
+"""Longest n-gram (thesis 6.4: N = 3)."""
+
+_WORD = re.compile(r"[^\W_]+(?:'[^\W_]+)*")
+
+Span = tuple[int, int]
+
+
+def words_of(utterance: str) -> tuple[str, ...]:
+    """Return the lower-case words of an utterance in any script, without punctuation (thesis 4.2)."""
+    return tuple(_WORD.findall(utterance.lower().replace("’", "'")))
+
+
+def ngrams_of(words: tuple[str, ...], longest: int = MAX_N) -> dict[str, list[Span]]:
+    """Map each n-gram (words joined by a space), n <= `longest`, to the spans [first, after last) where it stands."""
+    found: dict[str, list[Span]] = {}
+    for first in range(len(words)):
+        for after in range(first + 1, min(first + longest, len(words)) + 1):
+            found.setdefault(" ".join(words[first:after]), []).append((first, after))
+    return found

@@ -1,0 +1,179 @@
+"""All that is kept of the demos seen: concepts, graphlets, K, Φ, Π, and how often what was borne by what."""
+
+import json
+import os
+import tempfile
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+from learning.concept_id import Concept
+from learning.concepts import ConceptSpaces
+from learning.errors import KnowledgeError
+from learning.grammar.actions import ActionTable
+from learning.grounding.language_learner import LanguageLearner
+from learning.percept import Percept
+
+SCHEMA_VERSION = 1
+LEAST_SIGHTINGS = 20
+"""Sightings of a shape before its never bearing anything means that it cannot."""
+LEAST_BEARING = 0.005
+"""Share of sightings with something on top below which a shape is taken not to bear anything (noise aside)."""
+
+
+class Knowledge:
+    """What was learned. Saved as one readable JSON file; nothing in it is a demo or a sentence.
+
+    Attributes:
+        spaces: Visual concepts and action graphlets.
+        language: K, Φ, Π and preferences.
+        demos: Demos seen.
+        sentences: Sentences heard.
+        seen: Sightings of each shape concept.
+        bearing: Sightings of each shape concept with something on top.
+    """
+
+    def __init__(self) -> None:
+        """Start knowing nothing."""
+        self.spaces = ConceptSpaces()
+        self.language = LanguageLearner()
+        self.demos = 0
+        self.sentences = 0
+        self.seen: defaultdict[int, float] = defaultdict(float)
+        self.bearing: defaultdict[int, float] = defaultdict(float)
+        self._table: tuple[int, ActionTable] | None = None
+
+    def action_table(self) -> ActionTable:
+        """Give the properties of the known action graphlets, and which two amount to which third."""
+        library = self.spaces.actions
+        if self._table is None or self._table[0] != len(library):
+            known = library.numbered
+            composed = {}
+            for first, one in known.items():
+                for second, two in known.items():
+                    if _holds(one.states[-1]) and _holds(two.states[0]):
+                        number = library.find(one.followed_by(two))
+                        if number is not None and number not in (first, second):
+                            composed[first, second] = number
+            self._table = (
+                len(library),
+                ActionTable(
+                    {n: _holds(graphlet.states[0]) for n, graphlet in known.items()},
+                    {n: _holds(graphlet.states[-1]) for n, graphlet in known.items()},
+                    composed,
+                ),
+            )
+        return self._table[1]
+
+    def count_bearing(self, percept: Percept) -> None:
+        """Count which shapes have something on top."""
+        for number, clear in zip(percept.properties["shape"], percept.clear, strict=True):
+            self.seen[int(number)] += 1
+            self.bearing[int(number)] += not clear
+
+    def bearing_shapes(self) -> frozenset[int]:
+        """Shapes that something can rest on: seen to do so, or not seen often enough to tell."""
+        return frozenset(
+            number
+            for number, seen in self.seen.items()
+            if seen < LEAST_SIGHTINGS or self.bearing[number] > LEAST_BEARING * seen
+        )
+
+    def follow_aliases(self) -> None:
+        """Rename concepts that were merged into older ones wherever language speaks of them."""
+        for space, mixture in self.spaces.mixtures.items():
+            for number in range(mixture.numbers_given):
+                kept = mixture.resolve(number)
+                if kept != number and self.language.correlation.concept_counts.get(Concept(space, number)):
+                    self.language.rename(Concept(space, number), Concept(space, kept))
+        for counts in (self.seen, self.bearing):
+            for number in [n for n in counts if self.spaces.resolve("shape", n) != n]:
+                counts[self.spaces.resolve("shape", number)] += counts.pop(number)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain numbers, lists and strings."""
+        return {
+            "schema": "showtell.knowledge",
+            "version": SCHEMA_VERSION,
+            "demos": self.demos,
+            "sentences": self.sentences,
+            "concepts": self.spaces.to_json(),
+            "bearing": {str(n): [self.bearing[n], self.seen[n]] for n in sorted(self.seen)},
+            "language": self.language.to_json(),
+        }
+
+    @classmethod
+    def from_json(cls, data: Any, source: str = "knowledge") -> "Knowledge":
+        """Rebuild knowledge.
+
+        Raises:
+            KnowledgeError: `data` is not what `to_json` wrote; the message names `source` and the field.
+        """
+        if not isinstance(data, dict) or data.get("schema") != "showtell.knowledge":
+            raise KnowledgeError(
+                f"{source}: field 'schema' is not 'showtell.knowledge'; give a file that `showtell learn` wrote"
+            )
+        if data.get("version") != SCHEMA_VERSION:
+            raise KnowledgeError(
+                f"{source}: field 'version' is {data.get('version')!r}, this program reads {SCHEMA_VERSION}; learn again"
+            )
+        knowledge = cls()
+        field = "concepts"
+        try:
+            knowledge.spaces = ConceptSpaces.from_json(data["concepts"])
+            field = "language"
+            knowledge.language = LanguageLearner.from_json(data["language"])
+            field = "bearing"
+            for number, (bearing, seen) in data["bearing"].items():
+                knowledge.bearing[int(number)], knowledge.seen[int(number)] = float(bearing), float(seen)
+            field = "demos"
+            knowledge.demos, knowledge.sentences = int(data["demos"]), int(data["sentences"])
+        except KnowledgeError as error:
+            raise KnowledgeError(f"{source}: {error}") from None
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise KnowledgeError(
+                f"{source}: field '{field}' is malformed ({type(error).__name__}: {error}); learn again or restore the file"
+            ) from None
+        return knowledge
+
+    def save(self, path: str | Path) -> None:
+        """Write one JSON file, first beside its place and then moved there, so that a failure loses nothing."""
+        path = Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(_readable(self.to_json()))
+            Path(temporary).replace(path)
+        except BaseException:
+            Path(temporary).unlink(missing_ok=True)
+            raise
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Knowledge":
+        """Read a knowledge file.
+
+        Raises:
+            KnowledgeError: The file is missing, is no JSON, or has another schema version; the message names it.
+        """
+        path = Path(path)
+        try:
+            data = json.loads(path.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise KnowledgeError(f"{path}: cannot be read ({error.strerror}); give a knowledge file") from None
+        except ValueError as error:
+            raise KnowledgeError(f"{path}: is not JSON ({error}); give a file that `showtell learn` wrote") from None
+        return cls.from_json(data, str(path))
+
+
+def _holds(state: Any) -> bool:
+    return bool(state.gripper_closed and state.touching)
+
+
+def _readable(data: Any, depth: int = 0) -> str:
+    """JSON with one line an entry down to the fourth level, so that files can be read and compared."""
+    if not isinstance(data, dict) or depth >= 5 or not data:
+        return json.dumps(data, ensure_ascii=False)
+    pad = " " * (depth + 1)
+    rows = [f"{pad}{json.dumps(key, ensure_ascii=False)}: {_readable(value, depth + 1)}" for key, value in data.items()]
+    return "{\n" + ",\n".join(rows) + "\n" + " " * depth + "}"
