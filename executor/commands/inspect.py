@@ -1,0 +1,147 @@
+"""`showtell inspect`: what was learned, or how a sentence is understood."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from executor.commands.output import FAILED, Json, Output, Seed
+
+if TYPE_CHECKING:
+    from learning import Knowledge
+
+
+def inspect(
+    knowledge: Annotated[Path, typer.Argument(help="Knowledge file that `showtell learn` wrote.")],
+    sentence: Annotated[str | None, typer.Argument(help="A sentence to understand.")] = None,
+    scene: Annotated[str, typer.Option(help="Scene for the sentence: `board` or a TOML file.")] = "board",
+    rules: Annotated[int, typer.Option(min=0, help="How many grammar rules to list.")] = 25,
+    everything: Annotated[bool, typer.Option("--all", help="List concepts that no word means, too.")] = False,
+    seed: Seed = 0,
+    as_json: Json = False,
+) -> None:
+    """Show what was learned as tables, or the tree by which a sentence is understood in a scene.
+
+    Example: showtell inspect knowledge.json "put the red cube on the blue cube" --seed 7
+    """
+    from learning import Knowledge
+
+    out = Output(as_json)
+    learned = Knowledge.load(knowledge)
+    if sentence is None:
+        tell_knowledge(out, learned, rules, everything)
+    else:
+        _understand(out, learned, sentence, scene, seed)
+
+
+def tell_knowledge(out: Output, knowledge: "Knowledge", rules: int, everything: bool = False) -> None:
+    """Print concepts with their words, actions, grammar and sizes."""
+    from executor.learned_tables import action_rows, concept_rows, function_words, part_sizes, rule_rows
+
+    concepts = concept_rows(knowledge)
+    actions = action_rows(knowledge)
+    grammar = rule_rows(knowledge, rules)
+    sizes = part_sizes(knowledge)
+    passed = function_words(knowledge)
+    tell_words(out, knowledge, everything)
+    if grammar:
+        shown = [(left, right, f"{probability:.3f}", f"{count:.1f}") for left, right, probability, count in grammar]
+        out.table("Grammar Π (most frequent rules)", ("element", "becomes", "probability", "count"), shown)
+    total = sum(sizes.values())
+    out.table(
+        f"Size of each part: {total / 1000:.1f} kB in all",
+        ("part", "kB"),
+        [(part, f"{size / 1000:.1f}") for part, size in sizes.items()],
+    )
+    out.say(f"{knowledge.demos} demos seen, {knowledge.sentences} sentences heard")
+    out.result(
+        {
+            "demos": knowledge.demos,
+            "sentences": knowledge.sentences,
+            "concepts": {
+                str(concept): {"mean": mean, "demos": demos, "words": {ngram: round(p, 4) for ngram, p, _ in words}}
+                for concept, mean, demos, words in concepts
+            },
+            "actions": {
+                str(concept): {"states": states, "words": {ngram: round(p, 4) for ngram, p, _ in words}}
+                for concept, states, words in actions
+            },
+            "passed_over": passed,
+            "rules": [
+                {"left": left, "right": right, "probability": round(p, 4), "count": round(n, 2)}
+                for left, right, p, n in grammar
+            ],
+            "bytes": sizes,
+        }
+    )
+
+
+def tell_words(out: Output, knowledge: "Knowledge", everything: bool = False) -> None:
+    """Print the concepts of each space with a patch of their colour and their words, then actions."""
+    from rich.text import Text
+
+    from executor.learned_tables import action_rows, colour_of, concept_rows, function_words, spoken
+
+    rows = []
+    silent = 0
+    for concept, mean, demos, words in concept_rows(knowledge):
+        if not words and not everything:
+            silent += 1
+            continue
+        patch = Text("      ")
+        if concept.space == "colour":
+            colour = "rgb({},{},{})".format(
+                *colour_of(knowledge.spaces.mixtures["colour"].components[concept.number].mean)
+            )
+            patch = Text("      ", style=f"on {colour}")
+        rows.append((str(concept), patch, mean, demos or "", spoken(words)))
+    columns = ("concept", "", "its mean", "demos", "words that mean it (Φ)")
+    note = f"; {silent} more have no word" if silent else ""
+    out.table(f"Concepts{note}", columns, rows)
+    out.table(
+        "Actions (O open, C closed; touching or apart; place of the object)",
+        ("concept", "states", "words that mean it (Φ)"),
+        [(str(concept), states, spoken(words)) for concept, states, words in action_rows(knowledge)],
+    )
+    passed = function_words(knowledge)
+    if passed:
+        out.say("words that carry no concept: " + ", ".join(passed[:20]))
+
+
+def _understand(out: Output, knowledge: "Knowledge", sentence: str, scene: str, seed: int) -> None:
+    """Print how a sentence is understood in a scene."""
+    import numpy as np
+
+    from executor.errors import InputError
+    from learning import Interpreter
+    from learning.perception import observe_world, percept_of
+    from twin import World
+
+    if not sentence.split():
+        raise InputError("the sentence is empty; leave it out to see what was learned")
+    rng = np.random.default_rng(seed)
+    with World.from_scene(scene, seed=seed) as world:
+        percept = percept_of(observe_world(world.state(), world.spec, rng), knowledge.spaces)
+    reading = Interpreter(knowledge).interpret(sentence, percept)
+    if reading.tree is not None:
+        out.say(reading.tree.draw(reading.words))
+    out.say(reading.explanation)
+    out.result(
+        {
+            "sentence": sentence,
+            "understood": reading.understood,
+            "explanation": reading.explanation,
+            "tree": reading.tree.draw(reading.words) if reading.tree else None,
+            "unknown": list(reading.unknown),
+            "confidence": reading.confidence,
+            "seed": seed,
+            "scene": scene,
+        }
+    )
+    if not reading.understood:
+        raise typer.Exit(FAILED)
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add the command to an app."""
+    app.command()(inspect)

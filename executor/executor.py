@@ -1,0 +1,138 @@
+"""`Executor`: from a sentence to a changed world, checked by looking."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from executor.errors import InputError, RefusalError
+from executor.goal_runner import GoalRunner
+from executor.report import ExecutionReport
+from executor.sight import Sight
+from learning.interpretation import Interpretation, Interpreter
+from learning.perception import percept_of
+
+if TYPE_CHECKING:
+    from learning import Knowledge
+    from learning.interpretation import Goal
+    from twin import World
+
+
+class Executor:
+    """Does on the twin what a sentence says, as far as it was learned.
+
+    Args:
+        world: Where to do it.
+        knowledge: What was learned.
+        rng: Source of the noise of looking; the scene's seed decides when it is left out.
+    """
+
+    def __init__(self, world: "World", knowledge: "Knowledge", rng: np.random.Generator | None = None) -> None:
+        self.world = world
+        self.knowledge = knowledge
+        self.rng = np.random.default_rng(world.spec.seed) if rng is None else rng
+        self._interpreter = Interpreter(knowledge)
+
+    def execute(self, sentence: str, *, plan_only: bool = False) -> ExecutionReport:
+        """Understand a sentence in the scene as it is seen, and do what it says.
+
+        What cannot be understood or done is refused with an explanation; only a fault in the arguments raises.
+
+        Args:
+            sentence: What to do.
+            plan_only: Stop after the plan of the first goal; nothing moves.
+
+        Raises:
+            InputError: The sentence holds no word.
+        """
+        if not any(letter.isalnum() for letter in sentence):
+            raise InputError(f"the sentence {sentence!r} holds no word; say what to do")
+        runner = GoalRunner(self.world, self.rng)
+        observation = runner.look()
+        with runner.stopwatch.part("perceive"):
+            percept = percept_of(observation, self.knowledge.spaces)
+        with runner.stopwatch.part("interpret"):
+            reading = self._interpreter.interpret(sentence, percept)
+        doubt = _doubt(reading)
+        report = ExecutionReport(
+            sentence,
+            False,
+            True,
+            _sentences(_heard(reading), doubt),
+            goal=reading.goals[0] if reading.goals else None,
+            goals=reading.goals,
+            durations=runner.stopwatch.seconds,
+        )
+        if doubt or not reading.understood or not reading.goals:
+            return report
+        sight = Sight.of(observation)
+        for number, goal in enumerate(reading.goals):
+            if number:
+                sight = Sight.of(runner.look())
+            report = _after(report, runner, goal, sight, plan_only)
+            if not report.success or plan_only:
+                break
+        return report
+
+
+def _doubt(reading: Interpretation) -> str:
+    """Why an understood sentence had better not be acted on, or nothing."""
+    if not reading.understood:
+        return ""
+    if reading.unheeded:
+        return f"nothing here is {_quoted(reading.unheeded)}, so I do nothing"
+    several = len(reading.object_candidates)
+    if several > 1:
+        entity = _words_of(reading, "entity")
+        said = f"“{entity}”" if entity else "the words"
+        return f"{several} objects fit {said}; say which one"
+    return ""
+
+
+def _heard(reading: Interpretation) -> str:
+    """Which words were understood as what, and which were not."""
+    if reading.tree is None:
+        return reading.explanation
+    leaves = [node for node in reading.tree.nodes() if node.concept is not None]
+    said = ", ".join(f"“{' '.join(reading.words[n.first - 1 : n.last])}” as {n.concept}" for n in leaves)
+    parts = [f"understood {said}"]
+    if reading.unknown:
+        parts.append(f"never heard {_quoted(reading.unknown)}")
+    return "; ".join(parts)
+
+
+def _words_of(reading: Interpretation, label: str) -> str:
+    """Words of the first node with a label."""
+    nodes = reading.tree.nodes() if reading.tree else ()
+    node = next((node for node in nodes if node.label == label), None)
+    return "" if node is None else " ".join(reading.words[node.first - 1 : node.last])
+
+
+def _quoted(words: tuple[str, ...]) -> str:
+    return ", ".join(f"“{word}”" for word in words)
+
+
+def _after(report: ExecutionReport, runner: GoalRunner, goal: "Goal", sight: Sight, plan_only: bool) -> ExecutionReport:
+    """The report, continued by what became of one more goal."""
+    report = replace(report, goal=goal)
+    try:
+        if plan_only:
+            return replace(report, plan=runner.plan(goal, sight), success=True, refused=False)
+        run = runner.carry_out(goal, sight)
+    except RefusalError as refusal:
+        return replace(report, success=False, explanation=_sentences(report.explanation, str(refusal)))
+    said = [part for part in (run.note, run.outcome.explanation if run.outcome else "") if part]
+    return replace(
+        report,
+        success=run.outcome is not None and run.outcome.right,
+        refused=False,
+        explanation=_sentences(report.explanation, *said),
+        plan=run.plan,
+        outcome=run.outcome,
+        attempts=report.attempts + run.attempts,
+    )
+
+
+def _sentences(*parts: str) -> str:
+    """Join explanations with semicolons, without their full stops."""
+    return "; ".join(part.strip().rstrip(".") for part in parts if part.strip())
