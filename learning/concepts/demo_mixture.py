@@ -62,7 +62,7 @@ def _modes(points: FloatArray, tracks: NDArray[np.int64], space: type[FeatureSpa
 
 
 def _component(points: FloatArray, space: type[FeatureSpace], least: float) -> Gaussian:
-    """Mean and covariance (with the variance of `least` added) of the values that a component holds: D_k of appendix A."""
+    """Mean and covariance, with `least` squared added, of the values that a component holds: D_k of appendix A."""
     mean = points.mean(axis=0)
     centred = points - mean
     covariance = centred.T @ centred / len(points)

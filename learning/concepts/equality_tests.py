@@ -84,7 +84,8 @@ def covariance_p_values(new: Statistics, old: Statistics, diagonal: bool) -> Flo
         (A, K) in 0..1.
     """
     size = _harmonic(
-        effective_size(new.counts, new.demos, SHAPE_CORRELATION), effective_size(old.counts, old.demos, SHAPE_CORRELATION)
+        effective_size(new.counts, new.demos, SHAPE_CORRELATION),
+        effective_size(old.counts, old.demos, SHAPE_CORRELATION),
     )
     return np.minimum(
         _w_p_values(new.covariances, old.precisions, size, diagonal),

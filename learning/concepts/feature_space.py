@@ -27,7 +27,7 @@ class FeatureSpace:
         shared_noise: Whether the components of one demo are fitted with one covariance, that of the sensor. A component
             of its own for a few values then costs few parameters, so that BIC does not lump rare things together.
         grain: Standard deviation added in the fit of one demo (`reg_covar`): finer structure is not looked for.
-        floor: Standard deviation below which differences mean nothing; its square is added to every concept's variances.
+        floor: Standard deviation below which differences mean nothing: its square is added to a concept's variances.
         resolution: Modes closer than this start out as one in the search for the number of components.
         correlation: Share of a value's variance that all values of one demo have in common (intraclass correlation):
             light, placement and viewpoint stay the same within a demo, so its values are not independent draws.

@@ -114,7 +114,8 @@ class IncrementalMixture:
         if self._prepared is None:
             components = self.components
             means, covariances = stacked(list(components.values()), self.space.dimension)
-            self._prepared = np.array(list(components), dtype=np.int64), means, np.linalg.inv(covariances)
+            precisions = np.asarray(np.linalg.inv(covariances), dtype=np.float64)
+            self._prepared = np.array(list(components), dtype=np.int64), means, precisions
         numbers, means, precisions = self._prepared
         flat = np.asarray(values, dtype=np.float64).reshape(-1, self.space.dimension)
         squared = squared_mahalanobis(flat, means, precisions)
@@ -168,7 +169,8 @@ class IncrementalMixture:
     def _kept_entries(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Rows and columns of the covariance that are stored: its diagonal, or its upper triangle."""
         if self.space.diagonal:
-            return np.diag_indices(self.space.dimension)
+            diagonal = np.arange(self.space.dimension)
+            return diagonal, diagonal
         return np.triu_indices(self.space.dimension)
 
     def _shaped(self, component: Gaussian) -> Gaussian:

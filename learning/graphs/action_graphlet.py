@@ -24,9 +24,7 @@ class GraphletState:
 
     def __str__(self) -> str:
         """Write the state as `C touch 1`."""
-        return (
-            f"{'C' if self.gripper_closed else 'O'} {'touch' if self.touching else 'apart'} {self.object_location}"
-        )
+        return f"{'C' if self.gripper_closed else 'O'} {'touch' if self.touching else 'apart'} {self.object_location}"
 
 
 @dataclass(frozen=True, slots=True)

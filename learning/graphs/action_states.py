@@ -5,13 +5,12 @@ from numpy.typing import NDArray
 
 from learning.concepts.concept_spaces import ConceptSpaces
 from learning.graphs.action_graphlet import ActionGraphlet, GraphletState
+from learning.graphs.smoothing import lasting, smoothed, without_short_rows
 from learning.perception.observation import Observation
 from learning.perception.tracks import MOVED, anchors, moved_object
 
 SHORTEST_STATE = 2
 """Frames that a qualitative state must last: a shorter one is noise, or changes that belong together."""
-SMOOTHING = 3
-"""Frames of the running mean over tracks."""
 
 
 def action_graphlet(observation: Observation, spaces: ConceptSpaces) -> ActionGraphlet:
@@ -32,30 +31,14 @@ def action_graphlet(observation: Observation, spaces: ConceptSpaces) -> ActionGr
     closed = lasting(observation.gripper_closed, SHORTEST_STATE)
     location = lasting(_location_variable(observation, moved), SHORTEST_STATE)
     rows = np.stack([closed, touching, location], axis=1).astype(np.int64)
-    rows = _together(rows, SHORTEST_STATE)
+    rows = without_short_rows(rows, SHORTEST_STATE)
     return ActionGraphlet.of(GraphletState(bool(row[0]), bool(row[1]), int(row[2])) for row in rows)
 
 
 def touches(observation: Observation, spaces: ConceptSpaces) -> NDArray[np.bool_]:
     """Whether the gripper is at each object, per frame, (F, N): their distance concept is the *at it* one."""
     offset = observation.location - observation.gripper_location[:, None]
-    return spaces.predicates("distance", _smoothed(offset)) == spaces.touching
-
-
-def lasting(values: NDArray[np.generic], shortest: int) -> NDArray[np.generic]:
-    """Give values that last less than `shortest` frames to the value before them; the first run is always kept."""
-    result = values.copy()
-    current = result[0]
-    start = 0
-    while start < len(result):
-        stop = start
-        while stop < len(result) and values[stop] == values[start]:
-            stop += 1
-        if stop - start >= shortest or start == 0:
-            current = values[start]
-        result[start:stop] = current
-        start = stop
-    return result
+    return np.asarray(spaces.predicates("distance", smoothed(offset)) == spaces.touching)
 
 
 def _location_variable(observation: Observation, moved: int) -> NDArray[np.int64]:
@@ -63,28 +46,6 @@ def _location_variable(observation: Observation, moved: int) -> NDArray[np.int64
     first, last = anchors(observation)
     if np.linalg.norm(last[moved] - first[moved]) <= MOVED:
         return np.zeros(len(observation.times), dtype=np.int64)
-    track = _smoothed(observation.location[:, moved])
-    return (np.linalg.norm(track - last[moved], axis=1) < np.linalg.norm(track - first[moved], axis=1)).astype(np.int64)
-
-
-def _together(rows: NDArray[np.int64], shortest: int) -> NDArray[np.int64]:
-    """Drop combinations that last less than `shortest` frames: their changes are one change."""
-    keep = np.ones(len(rows), dtype=bool)
-    start = 0
-    while start < len(rows):
-        stop = start
-        while stop < len(rows) and np.array_equal(rows[stop], rows[start]):
-            stop += 1
-        if stop - start < shortest and 0 < start and stop < len(rows):
-            keep[start:stop] = False
-        start = stop
-    return rows[keep]
-
-
-def _smoothed(track: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Running median over frames, (F, ...): it takes out noise and leaves jumps where they are."""
-    if len(track) < SMOOTHING:
-        return track
-    padded = np.concatenate([track[:1], track, track[-1:]])
-    windows = np.stack([padded[:-2], padded[1:-1], padded[2:]])
-    return np.asarray(np.median(windows, axis=0))
+    track = smoothed(observation.location[:, moved])
+    nearer_last = np.linalg.norm(track - last[moved], axis=1) < np.linalg.norm(track - first[moved], axis=1)
+    return np.asarray(nearer_last, dtype=np.int64)

@@ -6,6 +6,7 @@ To make the file again: `python -m learning.perception.descriptors`.
 import json
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +37,8 @@ def compute_descriptor(vertices: FloatArray, triangles: np.ndarray[tuple[int, in
     """
     import open3d
 
+    registration: Any = open3d.pipelines.registration  # its stubs ask for arguments that have defaults
+
     corners = vertices[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(normals, axis=1)
@@ -44,10 +47,11 @@ def compute_descriptor(vertices: FloatArray, triangles: np.ndarray[tuple[int, in
     u, v = rng.uniform(size=(2, SAMPLES, 1))
     u, v = np.where(u + v > 1.0, 1.0 - u, u), np.where(u + v > 1.0, 1.0 - v, v)  # fold the square to the triangle
     first, second, third = np.moveaxis(corners[chosen], 1, 0)
-    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(first + u * (second - first) + v * (third - first)))
+    points = first + u * (second - first) + v * (third - first)
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
     cloud.normals = open3d.utility.Vector3dVector(normals[chosen] / areas[chosen, None])
     search = open3d.geometry.KDTreeSearchParamRadius(NEIGHBOURHOOD)
-    histogram = np.asarray(open3d.pipelines.registration.compute_fpfh_feature(cloud, search).data).mean(axis=1)
+    histogram = np.asarray(registration.compute_fpfh_feature(cloud, search).data).mean(axis=1)
     return np.asarray(histogram / histogram.sum())
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from learning.errors import PerceptionError
 from learning.perception.board_noise import BOARD_NOISE, FRAME_TIME, BoardNoise, TrueTracks, observed
 from learning.perception.observation import Observation
-from robots.pose import FloatArray
+from robots.pose import FloatArray, read_only
 from twin.scene_spec import ObjectSpec, SceneSpec
 from twin.state import WorldState
 
@@ -58,7 +58,7 @@ def observe_key_frames(
         raise PerceptionError("there are no key frames to observe; give at least one")
     repeated = [frame for frame in frames for _ in range(KEY_FRAME_LENGTH)]
     tracks = TrueTracks(
-        times=FRAME_TIME * np.arange(len(repeated)),
+        times=read_only(FRAME_TIME * np.arange(len(repeated))),
         gripper_location=np.array([frame.gripper_location for frame in repeated], dtype=np.float64),
         gripper_closed=np.array([frame.gripper_closed for frame in repeated], dtype=bool),
         location=np.array([frame.object_location for frame in repeated], dtype=np.float64).reshape(
@@ -110,7 +110,7 @@ def observe_world(
     by_id = {thing.id: thing for thing in spec.objects}
     location = np.array([thing.pose_object_in_world.position for thing in state.objects]).reshape(-1, 3)
     tracks = TrueTracks(
-        times=state.time + FRAME_TIME * np.arange(WORLD_FRAMES),
+        times=read_only(state.time + FRAME_TIME * np.arange(WORLD_FRAMES)),
         gripper_location=np.tile(state.pose_tool_in_world.position, (WORLD_FRAMES, 1)),
         gripper_closed=np.full(WORLD_FRAMES, state.gripper_closed),
         location=np.tile(location, (WORLD_FRAMES, 1, 1)),

@@ -45,4 +45,4 @@ def clear_objects(location: FloatArray, hanging: int | None) -> NDArray[np.bool_
     above = (aside < 0.5 * CELL) & higher
     if hanging is not None:
         above[:, hanging] = False
-    return ~np.any(above, axis=1)
+    return np.asarray(~np.any(above, axis=1))

@@ -34,7 +34,7 @@ def at_start(observation: Observation) -> NDArray[np.bool_]:
     first, _ = anchors(observation)
     still = np.linalg.norm(observation.location - first, axis=2) < REST_RADIUS
     still[0] = True
-    return still
+    return np.asarray(still)
 
 
 def resting_track(observation: Observation) -> NDArray[np.int64]:
