@@ -10,9 +10,6 @@ from robots.pose import FloatArray, Pose
 from .physics import Physics
 
 FINGER_FRICTION = 1.0
-FINGER_SPINNING = 0.01
-FINGER_ROLLING = 0.0005
-"""What held 20 of 20 blocks in trials, with geared fingers."""
 GEAR_FORCE = 200.0
 """Force [N] that keeps the pair of fingers centred: large beside what a block can resist with."""
 DEFAULT_FORCE = 200.0
@@ -49,7 +46,7 @@ class Arm:
         self._limit = robot.velocity.tolist()
         for finger in self._fingers:
             # Without the anchor a held block creeps by about 1 mm in 3 s, and turns.
-            physics.set_friction(self.body, finger, FINGER_FRICTION, FINGER_SPINNING, FINGER_ROLLING, anchored=True)
+            physics.set_friction(self.body, finger, FINGER_FRICTION, anchored=True)
         physics.gear(self.body, self._fingers[0], self._fingers[1], GEAR_FORCE)
         self.target = robot.home.tolist()
         self.opening = robot.gripper.max_opening

@@ -180,10 +180,10 @@ class World:
         from `snapshot()` bit for bit as from `restore()`, though not bit for bit as if neither had been called.
         """
         self._physics_open()
-        self._wake_all()
         number = self._physics.save()
         snapshot = Snapshot(id(self), number, self._steps, tuple(self._arm.target), self._arm.opening)
         weakref.finalize(snapshot, self._physics.forget, number)
+        self.restore(snapshot)
         return snapshot
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -195,6 +195,10 @@ class World:
         self._physics_open()
         if snapshot.owner != id(self):
             raise TwinError("this snapshot is another world's: restore it in the world that made it")
+        self._physics.restore(snapshot.physics_state)
+        self._wake_all()
+        # A woken block takes part in physics one step later, so we take a step and undo it.
+        self._physics.step()
         self._physics.restore(snapshot.physics_state)
         self._wake_all()
         self._steps = snapshot.steps
