@@ -1,7 +1,7 @@
 """The Train-Robots examination: how many commands are understood rightly (design sections 4 and 6)."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing import get_context
@@ -171,9 +171,8 @@ def _run(work: Callable[[Fold], FoldAnswers], folds: Sequence[Fold], jobs: int) 
             yield fold, work(fold)
         return
     with ProcessPoolExecutor(min(jobs, len(folds)), mp_context=get_context("spawn")) as pool:
-        waiting = {pool.submit(work, fold): fold for fold in folds}
-        for future in as_completed(waiting):
-            yield waiting[future], future.result()
+        # In the order of the folds, so that one process or many add up to the same last digit.
+        yield from zip(folds, pool.map(work, folds), strict=True)
 
 
 def _scored(release: Release, answers: FoldAnswers, annotations: Mapping[int, PublicNode] | None) -> list[CommandScore]:
