@@ -1,5 +1,7 @@
 """What a demo file holds: topics, JSON schemas and metadata keys, shared by the recorder and the reader."""
 
+from collections.abc import Mapping
+
 import orjson
 
 FORMAT_VERSION = "1"
@@ -27,7 +29,7 @@ def _schema(title: str, **properties: object) -> bytes:
     return orjson.dumps({"title": title, "type": "object", "properties": fields, "required": list(fields)})
 
 
-def _described(kind: dict[str, object], text: str) -> dict[str, object]:
+def _described(kind: Mapping[str, object], text: str) -> dict[str, object]:
     return {**kind, "description": text}
 
 

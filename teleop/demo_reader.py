@@ -13,8 +13,8 @@ import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, Message, Metadata
-from mcap.stream_reader import MAGIC_SIZE, breakup_chunk
+from mcap.records import Channel, Chunk, Metadata
+from mcap.stream_reader import MAGIC_SIZE, get_chunk_data_stream
 from mcap.writer import MCAP0_MAGIC
 from numpy.typing import DTypeLike, NDArray
 from pydantic import ValidationError
@@ -28,6 +28,9 @@ from .gamepad_mapping import GamepadMapping
 
 SUFFIX = ".mcap"
 _FRAME = struct.Struct("<BQ")
+"""Before every record: opcode and length of what follows."""
+_MESSAGE = struct.Struct("<HIQQ")
+"""At the start of a message: channel, sequence (our control step), log and publish time."""
 _BROKEN = (McapError, ValueError, struct.error, zstandard.ZstdError, OverflowError, MemoryError)
 """What parsing a damaged record can raise; ValueError covers CRC, UTF-8 and JSON."""
 
@@ -104,7 +107,7 @@ class _Reading:
 
     def messages(self) -> Iterator[tuple[str, int, dict[str, object]]]:
         """Topic, step and content of all messages in whole, sound chunks."""
-        for opcode, body in self._records():
+        for opcode, body in _records(self._data, MAGIC_SIZE):
             try:
                 if opcode == Opcode.METADATA:
                     metadata = Metadata.read(ReadDataStream(BytesIO(body)))
@@ -112,38 +115,43 @@ class _Reading:
                         self.metadata = dict(metadata.metadata)
                 elif opcode == Opcode.CHUNK:
                     chunk = Chunk.read(ReadDataStream(BytesIO(body)))
-                    yield from self._chunk(breakup_chunk(chunk, validate_crc=True))
+                    stream, size = get_chunk_data_stream(chunk, validate_crc=True)
+                    yield from self._chunk(stream.read(size))
+                elif opcode == Opcode.FOOTER:
+                    self.complete = self._data.endswith(MCAP0_MAGIC)
+                    return
             except _BROKEN:
                 return
-        end = self._data[-MAGIC_SIZE:]
-        self.complete = self._footer_seen and end == MCAP0_MAGIC
 
-    def _records(self) -> Iterator[tuple[int, bytes]]:
-        """Opcode and content of every whole record of the file."""
-        self._footer_seen = False
-        position, size = MAGIC_SIZE, len(self._data)
-        while position + _FRAME.size <= size and not self._footer_seen:
-            opcode, length = _FRAME.unpack_from(self._data, position)
-            position += _FRAME.size
-            if position + length > size:
-                return
-            yield opcode, self._data[position : position + length]
-            position += length
-            self._footer_seen = opcode == Opcode.FOOTER
-
-    def _chunk(self, records: list[object]) -> list[tuple[str, int, dict[str, object]]]:
+    def _chunk(self, data: bytes) -> list[tuple[str, int, dict[str, object]]]:
         """Decode a chunk's messages: all of them or, when one is broken, none."""
         found = []
-        for record in records:
-            if isinstance(record, Channel):
-                self._topics[record.id] = record.topic
-            elif isinstance(record, Message):
-                topic, message = self._topics.get(record.channel_id, ""), orjson.loads(record.data)
+        utterances = []
+        for opcode, body in _records(data, 0):
+            if opcode == Opcode.CHANNEL:
+                channel = Channel.read(ReadDataStream(BytesIO(body)))
+                self._topics[channel.id] = channel.topic
+            elif opcode == Opcode.MESSAGE:
+                number, step, *_ = _MESSAGE.unpack_from(body)
+                topic, message = self._topics.get(number, ""), orjson.loads(body[_MESSAGE.size :])
                 if topic == UTTERANCE:
-                    self.utterances.append(str(message["text"]))
+                    utterances.append(str(message["text"]))
                 elif topic:
-                    found.append((topic, int(record.sequence), message))
+                    found.append((topic, step, message))
+        self.utterances += utterances
         return found
+
+
+def _records(data: bytes, position: int) -> Iterator[tuple[int, bytes]]:
+    """Opcode and content of every whole record; a chunk's inside is framed like the file itself."""
+    size = len(data)
+    while position + _FRAME.size <= size:
+        opcode, length = _FRAME.unpack_from(data, position)
+        position += _FRAME.size
+        if position + length > size:
+            return
+        yield opcode, data[position : position + length]
+        position += length
 
 
 def _demo(path: Path, metadata: dict[str, str], messages: _Messages, utterances: list[str], complete: bool) -> Demo:

@@ -6,7 +6,7 @@ import numpy as np
 
 from robots.pose import FloatArray
 
-from .gamepad import AXIS_INDEX, AXES, BUTTON_INDEX, BUTTONS, GamepadState
+from .gamepad import AXES, AXIS_INDEX, BUTTON_INDEX, BUTTONS, GamepadState
 from .gamepad_mapping import GamepadMapping
 
 SMOOTHING = 0.06
@@ -51,10 +51,8 @@ class Hand:
             wander = keep * self._wander[axis] + math.sqrt(1.0 - keep * keep) * CLUMSINESS * draws[0][axis]
             self._wander[axis] = wander
             size = self._mapping.deflection(smooth)
-            if abs(smooth) > 5e-4:  # a thumb that does not push lies still
-                size = size * (1.0 + wander) + TREMOR * draws[1][axis]
-            else:
-                size = 0.0
+            # A thumb that does not push lies still.
+            size = size * (1.0 + wander) + TREMOR * draws[1][axis] if abs(smooth) > 5e-4 else 0.0
             deflections.append(min(max(size, -1.0), 1.0))
         self.expected = np.array(self._smooth)
         x, y, z = deflections

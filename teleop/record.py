@@ -68,7 +68,9 @@ def record_demo(
         DemoError: The file cannot be written.
     """
     if world.time != 0.0:
-        raise TeleopError(f"a demo starts with its scene, but this world is already {world.time:.2f} s old: make a new one")
+        raise TeleopError(
+            f"a demo starts with its scene, but this world is already {world.time:.2f} s old: make a new one"
+        )
     path = Path(path)
     session = Session(world, mapping)
     rate = round(1.0 / world.DT)

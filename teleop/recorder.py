@@ -1,10 +1,11 @@
 """The recorder: a demo is written to MCAP as it happens, in chunks that a crash cannot take back."""
 
+import contextlib
 import json
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import IO, Any, Self
 
 import orjson
 from mcap.writer import CompressionType, Writer
@@ -62,7 +63,7 @@ class Recorder:
             self._file = path.open("wb")
         except OSError as error:
             raise DemoError(f"{path}: cannot be written: {error.strerror}") from error
-        self._writer = Writer(self._file, chunk_size=1 << 20, compression=CompressionType.ZSTD)
+        self._writer: Any = Writer(self._file, chunk_size=1 << 20, compression=CompressionType.ZSTD)
         try:
             self._begin(scene, mapping)
         except OSError as error:
@@ -161,12 +162,9 @@ class Recorder:
         if self._closed:
             return
         self._closed = True
-        try:
+        with contextlib.suppress(OSError):  # the disk may be what failed
             self._writer.flush()
-        except OSError:  # the disk may be what failed
-            pass
-        finally:
-            _close_quietly(self._file)
+        _close_quietly(self._file)
 
     def _begin(self, scene: SceneSpec, mapping: GamepadMapping) -> None:
         self._writer.start(profile="showtell", library=f"showtell {_version_of('showtell')}")
@@ -214,12 +212,10 @@ class Recorder:
         )
 
 
-def _close_quietly(file: object) -> None:
+def _close_quietly(file: IO[bytes]) -> None:
     """Close a file whose disk may be full; closing frees the handle even when the last flush fails."""
-    try:
-        file.close()  # type: ignore[attr-defined]
-    except OSError:
-        pass
+    with contextlib.suppress(OSError):
+        file.close()
 
 
 def _version_of(distribution: str) -> str:
@@ -227,4 +223,3 @@ def _version_of(distribution: str) -> str:
         return version(distribution)
     except PackageNotFoundError:
         return "not installed"
-

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from robots.pose import FloatArray
 from twin.state import WorldState
 from twin.world import World
 
@@ -87,8 +88,8 @@ class _Worst:
     def __init__(self) -> None:
         self.error, self.what, self.time = 0.0, "nothing", 0.0
 
-    def note(self, what: str, moment: float, difference: object) -> None:
-        error = float(np.max(np.abs(difference), initial=0.0))  # type: ignore[arg-type]
+    def note(self, what: str, moment: float, difference: FloatArray | float) -> None:
+        error = float(np.max(np.abs(difference), initial=0.0))
         if not error <= self.error:  # NaN counts as worst
             self.error, self.what, self.time = error, what, moment
 

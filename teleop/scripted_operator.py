@@ -45,6 +45,8 @@ PATIENCE = 6.0
 """Longest time for one part of a task [s]; then it tries something else."""
 LIFT = 0.08
 """How far a block is lifted that should just be held [m]."""
+CHECK_LIFT = 0.03
+"""How far it lifts a block before it checks its grasp [m]."""
 HELD_WITHIN = 0.012
 """A block whose centre is this close to the tool is in the gripper [m]."""
 PLACED_WITHIN = 0.012
@@ -182,11 +184,7 @@ class ScriptedOperator:
         hover = carry_height(eyes.view, here, here, None)
         yield from self._down(eyes.block, self._tool, hover, lambda: float(eyes.block()[2]))
         yield from self._tap(close=True)
-        if self.task.goal is None:
-            target = float(eyes.tool[2]) + LIFT
-        else:
-            target = float(eyes.tool[2]) + 0.03
-        yield from self._vertical(target)
+        yield from self._vertical(float(eyes.tool[2]) + (LIFT if self.task.goal is None else CHECK_LIFT))
         yield from self._wait(0.1)
 
     def _carry(self, block: int, goal: FloatArray) -> Iterator[Wish]:

@@ -5,6 +5,7 @@ acceleration and jerk limits, ends before the position limit. Since braking itse
 always a step that may be taken, and a motion that leads away from a limit is never held back.
 """
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -13,6 +14,7 @@ import numpy as np
 from robots import RobotModel
 from robots.pose import FloatArray, read_only
 
+from .damped_inverse import damped_inverse
 from .errors import ServoError
 from .gamepad_mapping import TwistCommand
 from .velocity_profile import VelocityProfile
@@ -20,10 +22,6 @@ from .velocity_profile import VelocityProfile
 POSITION_MARGIN = 2e-3
 """Joints keep this far from their position limits [rad]: room for the difference between a smooth braking ramp and one
 that is executed in steps of the control period, at most acceleration * dt² / 2."""
-SINGULAR_BELOW = 4e-3
-"""Manipulability sqrt(det(J Jᵀ)) below which inversion is damped [m³/rad³ for position rows]."""
-MAX_DAMPING = 0.05
-"""Damping at a singularity [m/rad]."""
 AGREE_WITHIN = 1e-6
 """Asked and executed twists that differ by less are the same [m/s]."""
 MAX_COMMANDED_SPEED = 2.0
@@ -95,7 +93,6 @@ class Servo:
         self._lower = (robot.lower + POSITION_MARGIN).tolist()
         self._upper = (robot.upper - POSITION_MARGIN).tolist()
         self._acceleration = robot.acceleration.tolist()
-        self._identity = np.eye(3 if self._n < 6 else 6)
         self._profile = VelocityProfile(robot.acceleration.tolist(), robot.jerk.tolist())
         # Slowing down along v = gain * distance decelerates by gain * v; a quarter of the ratio of jerk to acceleration
         # keeps its jerk, gain² * v, well inside the limit.
@@ -140,7 +137,8 @@ class Servo:
             reason, detail = ServoReason.NONE, ""
         else:
             asked = self._in_world(command, q)
-            wanted, reason = self._invert(jacobian, asked)
+            wanted, damped = damped_inverse(jacobian[self._rows], asked[self._rows])
+            reason = ServoReason.SINGULARITY if damped else ServoReason.NONE
             wanted, reason, detail = self._limit(wanted, positions, reason)
         velocity, acceleration, braked = self._advance(wanted, positions, dt)
         if braked is not None and reason is not ServoReason.BAD_INPUT:
@@ -149,7 +147,7 @@ class Servo:
         joint_velocity = np.array(velocity)
         executed = jacobian @ joint_velocity
         if reason is not ServoReason.BAD_INPUT:
-            if np.abs(executed - asked).max() <= AGREE_WITHIN:
+            if max(map(abs, (executed - asked).tolist())) <= AGREE_WITHIN:
                 reason, detail = ServoReason.NONE, ""
             elif reason is ServoReason.NONE:
                 follows = all(abs(w - v) <= AGREE_WITHIN for w, v in zip(wanted, velocity, strict=True))
@@ -158,10 +156,10 @@ class Servo:
 
     def _checked(self, values: FloatArray, name: str) -> list[float]:
         """Return measured joint values as floats, or raise ServoError."""
-        array = np.asarray(values, dtype=float)
-        if array.shape != (self._n,) or not np.isfinite(array).all():
+        listed: list[float] = np.asarray(values, dtype=float).tolist()
+        if np.shape(values) != (self._n,) or not all(map(math.isfinite, listed)):
             raise ServoError(f"{name} must be {self._n} finite values for {self.robot.name}, got {values!r}")
-        return array.tolist()  # type: ignore[no-any-return]  # numpy types the values as Any
+        return listed
 
     def _in_world(self, command: TwistCommand, q: FloatArray) -> FloatArray:
         """Return the commanded twist (6,) along the axes of the world."""
@@ -172,19 +170,6 @@ class Servo:
 
         rotation = rotation_matrix(self.robot.forward_kinematics(q).orientation_xyzw)
         return np.concatenate((rotation @ twist[:3], rotation @ twist[3:]))
-
-    def _invert(self, jacobian: FloatArray, twist: FloatArray) -> tuple[list[float], ServoReason]:
-        """Damped least squares, damped only near a singularity (Nakamura and Hanafusa 1986)."""
-        rows = jacobian[self._rows]
-        square = rows @ rows.T
-        manipulability = max(float(np.linalg.det(square)), 0.0) ** 0.5
-        reason = ServoReason.NONE
-        if manipulability < SINGULAR_BELOW:
-            damping = MAX_DAMPING * (1.0 - manipulability / SINGULAR_BELOW)
-            square = square + damping * damping * self._identity
-            reason = ServoReason.SINGULARITY
-        wanted: list[float] = (rows.T @ np.linalg.solve(square, twist[self._rows])).tolist()
-        return wanted, reason
 
     def _limit(
         self, wanted: list[float], positions: list[float], reason: ServoReason
