@@ -41,6 +41,12 @@ def true_relation(thing: Cell, ground: Cell) -> str:
     ]
 
 
+def true_distance(thing: Cell, ground: Cell) -> str:
+    """Name how far a cell is from another: `same column`, `adjacent` (the public label), or a number of cells."""
+    steps = max(abs(thing[0] - ground[0]), abs(thing[1] - ground[1]))
+    return {0: "same column", 1: "adjacent"}.get(steps, f"{steps} cells")
+
+
 class ConceptTally:
     """Counts how often each concept stood for each true value."""
 
@@ -83,5 +89,6 @@ class ConceptTally:
             self._counts[Concept(space, number)][value] += 1
 
     def _count_relations(self, space: str, numbers: IntArray, things: list[Cell], grounds: list[Cell]) -> None:
+        value_of = true_distance if space == "distance" else true_relation
         for i, j in np.argwhere(numbers != NO_CONCEPT):
-            self._count(space, int(numbers[i, j]), true_relation(things[i], grounds[j]))
+            self._count(space, int(numbers[i, j]), value_of(things[i], grounds[j]))

@@ -14,7 +14,7 @@ from learning.evaluation import TrainRobotsReport, cross_validate, examine, make
 from learning.evaluation.answers import Answer
 from learning.evaluation.baselines import Outcome, baseline_credits, possible_outcomes
 from learning.evaluation.command_score import fault
-from learning.evaluation.concept_names import ConceptTally, true_place, true_relation
+from learning.evaluation.concept_names import ConceptTally, true_distance, true_place, true_relation
 from learning.grammar.rcl import RclNode
 from learning.percept import NO_CONCEPT, Percept
 from learning.train_robots import Block, Command, Layout, Release, Scene
@@ -252,6 +252,11 @@ def test_the_word_baseline_learns_an_unambiguous_language(release: Release) -> N
 )
 def test_true_relations(thing: tuple[int, int, int], relation: str) -> None:
     assert true_relation(thing, (3, 3, 1)) == relation
+
+
+def test_true_distances() -> None:
+    cells = ((3, 3, 4), (2, 4, 0), (3, 6, 1))
+    assert [true_distance(cell, (3, 3, 1)) for cell in cells] == ["same column", "adjacent", "3 cells"]
 
 
 def test_true_places() -> None:
