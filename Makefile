@@ -23,7 +23,8 @@ lint: install
 	$(BIN)/lint-imports
 
 bench: install
-	$(BIN)/showtell record --device scripted --count 5 --seed 0 -o build/bench
+	rm -rf build/bench
+	$(BIN)/showtell record --device scripted --count 5 --jobs 1 --seed 0 -o build/bench
 
 install: $(STAMP)
 
