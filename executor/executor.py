@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from executor.doubts import doubt, heard
 from executor.errors import InputError, RefusalError
 from executor.goal_runner import GoalRunner
 from executor.report import ExecutionReport
 from executor.sight import Sight
-from learning.interpretation import Interpretation, Interpreter
+from learning.interpretation import Interpreter
 from learning.perception import percept_of
 
 if TYPE_CHECKING:
@@ -53,17 +54,17 @@ class Executor:
             percept = percept_of(observation, self.knowledge.spaces)
         with runner.stopwatch.part("interpret"):
             reading = self._interpreter.interpret(sentence, percept)
-        doubt = _doubt(reading)
+        trouble = doubt(reading, self.knowledge, percept)
         report = ExecutionReport(
             sentence,
             False,
             True,
-            _sentences(_heard(reading), doubt),
+            _sentences(heard(reading), trouble),
             goal=reading.goals[0] if reading.goals else None,
             goals=reading.goals,
             durations=runner.stopwatch.seconds,
         )
-        if doubt or not reading.understood or not reading.goals:
+        if trouble or not reading.understood or not reading.goals:
             return report
         sight = Sight.of(observation)
         for number, goal in enumerate(reading.goals):
@@ -73,43 +74,6 @@ class Executor:
             if not report.success or plan_only:
                 break
         return report
-
-
-def _doubt(reading: Interpretation) -> str:
-    """Why an understood sentence had better not be acted on, or nothing."""
-    if not reading.understood:
-        return ""
-    if reading.unheeded:
-        return f"nothing here is {_quoted(reading.unheeded)}, so I do nothing"
-    several = len(reading.object_candidates)
-    if several > 1:
-        entity = _words_of(reading, "entity")
-        said = f"“{entity}”" if entity else "the words"
-        return f"{several} objects fit {said}; say which one"
-    return ""
-
-
-def _heard(reading: Interpretation) -> str:
-    """Which words were understood as what, and which were not."""
-    if reading.tree is None:
-        return reading.explanation
-    leaves = [node for node in reading.tree.nodes() if node.concept is not None]
-    said = ", ".join(f"“{' '.join(reading.words[n.first - 1 : n.last])}” as {n.concept}" for n in leaves)
-    parts = [f"understood {said}"]
-    if reading.unknown:
-        parts.append(f"never heard {_quoted(reading.unknown)}")
-    return "; ".join(parts)
-
-
-def _words_of(reading: Interpretation, label: str) -> str:
-    """Words of the first node with a label."""
-    nodes = reading.tree.nodes() if reading.tree else ()
-    node = next((node for node in nodes if node.label == label), None)
-    return "" if node is None else " ".join(reading.words[node.first - 1 : node.last])
-
-
-def _quoted(words: tuple[str, ...]) -> str:
-    return ", ".join(f"“{word}”" for word in words)
 
 
 def _after(report: ExecutionReport, runner: GoalRunner, goal: "Goal", sight: Sight, plan_only: bool) -> ExecutionReport:

@@ -10,12 +10,6 @@ from executor.sight import Sight
 from learning.graphs import ActionGraphlet, GraphletState
 from twin import board
 
-State = GraphletState
-APART, TOUCH, GRIP, CARRIED = State(False, False, 0), State(False, True, 0), State(True, True, 0), State(True, True, 1)
-PUT, LEFT = State(False, True, 1), State(False, False, 1)
-TAKE = ActionGraphlet((APART, TOUCH, GRIP, CARRIED))
-DROP = ActionGraphlet((GRIP, CARRIED, PUT, LEFT))
-MOVE = ActionGraphlet((APART, TOUCH, GRIP, CARRIED, PUT, LEFT))
 GOAL = board.cell_centre(5, 2, 0)
 
 

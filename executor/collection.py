@@ -1,0 +1,131 @@
+"""Making collections of scripted demos: random scenes and tasks, recorded over several processes."""
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from executor.errors import InputError
+
+COLLECTIONS = ("board",)
+"""Collections that can be made from a seed."""
+
+Job = TypeVar("Job")
+Done = TypeVar("Done")
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """One demo that was recorded.
+
+    Attributes:
+        path: The demo.
+        sentence: What was said with it.
+        kind: What kind of task it shows.
+        simulated: Simulated time [s].
+        wall: Wall-clock time it took, without starting the process [s].
+    """
+
+    path: Path
+    sentence: str
+    kind: str
+    simulated: float
+    wall: float
+
+    @property
+    def real_time_factor(self) -> float:
+        """Simulated seconds a second."""
+        return self.simulated / self.wall
+
+
+def demo_path(folder: Path, collection: str, seed: int, number: int) -> Path:
+    """Where demo `number` of a collection lies."""
+    return folder / f"{collection}_{seed}_{number:04d}.mcap"
+
+
+def record_board(folder: Path, seed: int, robot: str | None, number: int) -> Recorded:
+    """Record one demo of a random task on a random board; the same seed and number give the same demo.
+
+    Args:
+        folder: Where to write it.
+        seed: Seed of the collection.
+        robot: Robot to use instead of the board arm.
+        number: Number of the demo in the collection.
+    """
+    from time import perf_counter
+
+    from teleop import ScriptedOperator, random_task, record_demo
+    from twin import World, random_board
+
+    begun = perf_counter()
+    rng = np.random.default_rng([seed, number])
+    asked = random_task(random_board(rng, seed=seed), rng)
+    path = demo_path(folder, "board", seed, number)
+    with World.from_scene(asked.scene, robot=robot) as world:
+        operator = ScriptedOperator(asked.task, rng)
+        record_demo(world, operator, path, utterances=(asked.sentence,), truth=asked.truth())
+        return Recorded(path, asked.sentence, asked.kind, world.time, perf_counter() - begun)
+
+
+def record_collection(
+    folder: Path,
+    count: int,
+    seed: int,
+    *,
+    robot: str | None = None,
+    jobs: int = 0,
+    on_demo: Callable[[], None] = lambda: None,
+) -> list[Recorded]:
+    """Record a board collection; returns the demos in order.
+
+    Args:
+        folder: Where to write them; it must be there.
+        count: How many.
+        seed: Seed of scenes, tasks, sentences and the operator's hand.
+        robot: Robot to use instead of the board arm.
+        jobs: Processes; 0 takes one a core.
+        on_demo: Called after every demo.
+
+    Raises:
+        InputError: A demo of that name is there already.
+    """
+    there = [path for number in range(count) if (path := demo_path(folder, "board", seed, number)).exists()]
+    if there:
+        raise InputError(f"{there[0]} is there already; choose another folder or another --seed")
+    work = partial(record_board, folder, seed, robot)
+    return [done for _, done in sorted(in_processes(work, range(count), jobs, on_demo), key=lambda pair: pair[0])]
+
+
+def in_processes(
+    work: Callable[[Job], Done], jobs: Sequence[Job], processes: int, on_done: Callable[[], None]
+) -> Iterator[tuple[int, Done]]:
+    """Do jobs in several processes; yields each job's index and outcome as it comes.
+
+    Fresh processes are started (not forked): physics clients and threads do not survive a fork.
+
+    Args:
+        work: What to do; can be pickled.
+        jobs: What to do it with.
+        processes: How many; 0 takes one a core.
+        on_done: Called after every job.
+    """
+    processes = min(processes or len(os.sched_getaffinity(0)), len(jobs))
+    if processes <= 1:
+        for index, job in enumerate(jobs):
+            yield index, work(job)
+            on_done()
+        return
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        waiting = {pool.submit(work, job): index for index, job in enumerate(jobs)}
+        try:
+            for future in as_completed(waiting):
+                yield waiting[future], future.result()
+                on_done()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)

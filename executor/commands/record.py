@@ -1,0 +1,79 @@
+"""`showtell record`: teleoperate and record demos with what was said."""
+
+from collections import Counter
+from enum import StrEnum
+from pathlib import Path
+from time import perf_counter
+from typing import Annotated
+
+import typer
+
+from executor.commands.output import Json, Output, Seed
+
+
+class Device(StrEnum):
+    """What the operator holds."""
+
+    SCRIPTED = "scripted"
+
+
+class Collection(StrEnum):
+    """Which scenes and tasks are recorded."""
+
+    BOARD = "board"
+
+
+def record(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the demos.")],
+    device: Annotated[Device, typer.Option(help="Who drives: a scripted operator moves sticks and buttons.")] = (
+        Device.SCRIPTED
+    ),
+    count: Annotated[int, typer.Option("--count", "-n", min=1, help="How many demos.")] = 1,
+    collection: Annotated[Collection, typer.Option(help="Which scenes and tasks.")] = Collection.BOARD,
+    robot: Annotated[str | None, typer.Option(help="Robot to use instead of the collection's own.")] = None,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")] = 0,
+    seed: Seed = 0,
+    as_json: Json = False,
+) -> None:
+    """Record demos: a gamepad drives the arm through the servo, and a sentence is said with each.
+
+    Example: showtell record --device scripted --count 20 --collection board -o demos/ --seed 1
+    """
+    from executor.collection import record_collection
+    from executor.files import new_folder
+    from robots import load_robot
+
+    out = Output(as_json)
+    if robot is not None:
+        load_robot(robot)  # complains before long work
+    folder = new_folder(output)
+    begun = perf_counter()
+    with out.progress("recording", count) as advance:
+        recorded = record_collection(folder, count, seed, robot=robot, jobs=jobs, on_demo=advance)
+    wall = perf_counter() - begun
+    simulated = sum(each.simulated for each in recorded)
+    single = sum(each.wall for each in recorded)
+    kinds = Counter(each.kind for each in recorded)
+    out.say(f"{count} demos in {folder}: " + ", ".join(f"{number} {kind}" for kind, number in sorted(kinds.items())))
+    out.say(
+        f"{simulated:.0f} s of teleoperation recorded in {wall:.1f} s; one demo runs at "
+        f"{simulated / single:.1f} x real time, all together at {simulated / wall:.1f} x"
+    )
+    out.result(
+        {
+            "device": device.value,
+            "collection": collection.value,
+            "demos": [str(each.path) for each in recorded],
+            "sentences": [each.sentence for each in recorded],
+            "simulated_seconds": simulated,
+            "wall_seconds": wall,
+            "real_time_factor": simulated / single,
+            "real_time_factor_in_all": simulated / wall,
+            "seed": seed,
+        }
+    )
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add the command to an app."""
+    app.command()(record)
