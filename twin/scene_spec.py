@@ -38,7 +38,8 @@ class SceneSpec(BaseModel):
     """A scene: objects, robot, and how the gripper starts. Saved in every demo's metadata.
 
     `gripper_position` is where the tool frame starts [m]; None leaves the robot at its home posture. `held` is the id
-    of the object that starts in the closed gripper: it stands at the tool frame, whatever its own `position` says.
+    of the object that starts in the closed gripper: it stands at the tool frame, whatever its own `position` says,
+    and the gripper is closed, whatever `gripper_closed` says.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

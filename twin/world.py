@@ -1,5 +1,6 @@
 """A scene in physics, stepped at a fixed rate."""
 
+import itertools
 import math
 import weakref
 from dataclasses import dataclass
@@ -37,12 +38,16 @@ _LOOKS_AT = (0.13, 0.18, 0.36)
 _FIELD_OF_VIEW = 50.0
 
 
+_numbers = itertools.count()
+"""Numbers the worlds of this process, so that a snapshot knows its own."""
+
+
 @dataclass(frozen=True, slots=True, weakref_slot=True)
 class Snapshot:
     """A moment of one world, to go back to. Only the world that made it can use it.
 
     Attributes:
-        owner: Which world it belongs to.
+        owner: Number of the world it belongs to.
         physics_state: Number of the state that the physics client keeps.
         steps: Steps since the world started.
         target: The arm's joint targets, (n,) [rad].
@@ -79,6 +84,7 @@ class World:
         self.spec = spec
         self.robot: RobotModel = load_robot(spec.robot)
         posture, tool = _start(spec, self.robot)
+        self._number = next(_numbers)
         self._state: WorldState | None = None
         self._physics = Physics(self.DT, SOLVER_ITERATIONS)
         try:
@@ -181,7 +187,7 @@ class World:
         """
         self._physics_open()
         number = self._physics.save()
-        snapshot = Snapshot(id(self), number, self._steps, tuple(self._arm.target), self._arm.opening)
+        snapshot = Snapshot(self._number, number, self._steps, tuple(self._arm.target), self._arm.opening)
         weakref.finalize(snapshot, self._physics.forget, number)
         self.restore(snapshot)
         return snapshot
@@ -193,7 +199,7 @@ class World:
             TwinError: The snapshot is another world's.
         """
         self._physics_open()
-        if snapshot.owner != id(self):
+        if snapshot.owner != self._number:
             raise TwinError("this snapshot is another world's: restore it in the world that made it")
         self._physics.restore(snapshot.physics_state)
         self._wake_all()
