@@ -115,7 +115,7 @@ class Knowledge:
             )
         if data.get("version") != SCHEMA_VERSION:
             raise KnowledgeError(
-                f"{source}: field 'version' is {data.get('version')!r}, this program reads {SCHEMA_VERSION}; learn again"
+                f"{source}: field 'version' is {data.get('version')!r}, expected {SCHEMA_VERSION}; learn again"
             )
         knowledge = cls()
         field = "concepts"
@@ -132,7 +132,7 @@ class Knowledge:
             raise KnowledgeError(f"{source}: {error}") from None
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise KnowledgeError(
-                f"{source}: field '{field}' is malformed ({type(error).__name__}: {error}); learn again or restore the file"
+                f"{source}: field '{field}' is malformed ({type(error).__name__}: {error}); learn again"
             ) from None
         return knowledge
 

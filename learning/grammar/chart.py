@@ -6,7 +6,7 @@ kept (Viterbi). An element that denotes nothing in the scene is dropped at once.
 over at the cost of their probability of being function words.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, REFERENCE_SPACE, RELATION_SPACES, Concept
@@ -27,6 +27,16 @@ SETTLED = 40.0
 
 PROPERTIES = frozenset((*OBJECT_SPACES, REFERENCE_SPACE))
 EVENT_PARTS = ("action", "entity", "destination")
+ENTITY_PARTS = (*OBJECT_SPACES, "spatial-relation")
+USUAL_EVENTS = (
+    ("action",),
+    ("action", "entity"),
+    ("action", "entity", "destination"),
+    ("action", "destination"),
+)
+UNUSUAL = -3.0
+"""Log weight of an order of children in which what governs does not come first, until it was seen."""
+ROOTS = frozenset(("event", "sequence", "event*"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +101,12 @@ class Reading:
         return self.moved.bit_count() * max(1, self.places.bit_count())
 
 
+Cell = dict[str, list[Item]]
+"""Items over one span by label, most probable first."""
+Found = dict[tuple[str, tuple[str, ...], int, int, int, Concept | None], Item]
+"""The best item of each label, children, denotation and concept over one span."""
+
+
 class Chart:
     """All readings of one sentence in one scene."""
 
@@ -126,8 +142,7 @@ class Chart:
         self._skipped = [0.0]
         for cost in skip:
             self._skipped.append(self._skipped[-1] + cost)
-        self._cells: dict[tuple[int, int], list[Item]] = {}
-        self._by_first: list[list[tuple[int, list[Item]]]] = [[] for _ in range(n_words + 1)]
+        self._cells: dict[tuple[int, int], Cell] = {}
         self._weights: dict[tuple[str, tuple[str, ...]], float] = {}
         lexical: dict[tuple[int, int], list[Item]] = {}
         for entry in entries:
@@ -139,13 +154,11 @@ class Chart:
                 self._fill(first, first + width, lexical.get((first, first + width), []))
 
     def readings(self) -> list[Reading]:
-        """Give the readings of the whole sentence, most probable first, one for each action, object set and place set."""
+        """Give the readings of the whole sentence, most probable first, one an action, object and place set."""
         best: dict[tuple[int, int, int], Reading] = {}
         for (first, after), cell in self._cells.items():
             around = self._skipped[first] + self._skipped[self.n_words] - self._skipped[after]
-            for item in cell:
-                if item.label not in ("event", "sequence"):
-                    continue
+            for item in (*cell.get("event", ()), *cell.get("sequence", ())):
                 outcome = self._outcome(item)
                 if outcome is None:
                     continue
@@ -159,9 +172,10 @@ class Chart:
         key = (left, right)
         weight = self._weights.get(key)
         if weight is None:
-            weight = self._weights[key] = self.grammar.log_weight(left, right) + self.preferences.of(
-                rule_feature(left, right)
-            )
+            weight = self.grammar.log_weight(left, right) + self.preferences.of(rule_feature(left, right))
+            if (left == "event" and right not in USUAL_EVENTS) or right[0] == "entity" and left == "spatial-relation":
+                weight += UNUSUAL
+            self._weights[key] = weight
         return weight
 
     def _lexical_item(self, entry: LexicalEntry) -> Item | None:
@@ -181,173 +195,137 @@ class Chart:
         )
 
     def _fill(self, first: int, after: int, lexical: list[Item]) -> None:
-        found: dict[tuple[str, tuple[str, ...], int, int, int], Item] = {}
+        found: Found = {}
         for item in lexical:
             _keep(found, item)
         for middle in range(first + 1, after):
-            left_cell = self._cells.get((first, middle))
-            if not left_cell:
+            left = self._cells.get((first, middle))
+            if left is None:
                 continue
             for start in range(middle, min(middle + MAX_GAP, after - 1) + 1):
-                right_cell = self._cells.get((start, after))
-                if right_cell:
-                    gap = self._skipped[start] - self._skipped[middle]
-                    for left in left_cell:
-                        for right in right_cell:
-                            self._join(found, left, right, gap)
-        if not found:
-            return
-        self._close(found)
-        self._cells[first, after] = self._prune(found)
+                right = self._cells.get((start, after))
+                if right is not None:
+                    self._join(found, left, right, self._skipped[start] - self._skipped[middle])
+        if found:
+            self._close(found)
+            self._cells[first, after] = self._prune(found)
 
-    def _prune(self, found: Mapping[object, Item]) -> list[Item]:
-        kept: list[Item] = []
-        counts: dict[str, int] = {}
+    def _prune(self, found: Found) -> Cell:
+        kept: Cell = {}
         for item in sorted(found.values(), key=lambda item: -item.score):
-            kind = item.label
-            if counts.get(kind, 0) < (ROOT_BEAM if kind in ("event", "sequence", "event*") else self.beam):
-                counts[kind] = counts.get(kind, 0) + 1
-                kept.append(item)
+            alike = kept.setdefault(item.label, [])
+            if len(alike) < (ROOT_BEAM if item.label in ROOTS else self.beam):
+                alike.append(item)
         return kept
 
     def _allowed(self, label: str, parts: tuple[str, ...], usual: bool) -> bool:
         """Whether to try an order of children: the usual ones, those seen, and all until the element has settled."""
-        return usual or self.grammar.seen_start(label, parts) or self.grammar.total(label) < SETTLED
+        return usual or self.grammar.total(label) < SETTLED or self.grammar.seen_start(label, parts)
 
-    def _join(
-        self, found: dict[tuple[str, tuple[str, ...], int, int, int], Item], left: Item, right: Item, gap: float
-    ) -> None:
-        score = left.score + right.score + gap
-        match left.label:
-            case "entity*":
-                kind = right.label
-                if kind in left.parts or "reference" in left.parts or kind == "reference":
-                    return
-                if kind not in OBJECT_SPACES and kind != "spatial-relation":
-                    return
-                objects = left.objects & right.objects
-                if objects:
-                    item = Item(
-                        "entity*", (*left.parts, kind), left.first, right.after, objects, 0, -1, score,
-                        (*left.children, right),
-                    )  # fmt: skip
-                    _keep(found, item)
-            case "direction" | "distance":
-                if right.label == "entity" and left.concept is not None and "reference" not in right.parts:
-                    self._relate(found, left.concept, right, (left, right), score)
-            case "entity":
-                if right.label in RELATION_SPACES and right.concept is not None and "reference" not in left.parts:
-                    if self._allowed("spatial-relation", ("entity", right.label), usual=False):
-                        self._relate(found, right.concept, left, (left, right), score)
-            case "event*":
-                if right.label in EVENT_PARTS and right.label not in left.parts:
-                    self._extend_event(found, left, right, score)
-            case "event":
-                if right.label == "event":
-                    self._sequence(found, left, right, score)
-            case _:
-                return
+    def _join(self, found: Found, left: Cell, right: Cell, gap: float) -> None:
+        """Make every element that an element of the left cell and one of the right cell make up."""
+        for whole in left.get("entity*", ()):
+            for kind in ENTITY_PARTS:
+                if kind not in whole.parts and "reference" not in whole.parts:
+                    for part in right.get(kind, ()):
+                        self._extend_entity(found, whole, part, gap)
+        grounds = [item for item in right.get("entity", ()) if "reference" not in item.parts]
+        for kind in RELATION_SPACES:
+            for relation in left.get(kind, ()) if grounds else ():
+                for ground in grounds:
+                    self._relate(found, relation, ground, (relation, ground), gap)
+            relations = right.get(kind)
+            if relations and self._allowed("spatial-relation", ("entity", kind), usual=False):
+                for ground in left.get("entity", ()):
+                    if "reference" not in ground.parts:
+                        for relation in relations:
+                            self._relate(found, relation, ground, (ground, relation), gap)
+        for whole in left.get("event*", ()):
+            for kind in EVENT_PARTS:
+                if kind not in whole.parts and self._event_order((*whole.parts, kind)):
+                    for part in right.get(kind, ()):
+                        self._extend_event(found, whole, part, gap)
+        closing = [item for item in right.get("event", ()) if item.places]
+        for opening in left.get("event", ()) if closing else ():
+            if not opening.places and "entity" in opening.parts:
+                for event in closing:
+                    self._sequence(found, opening, event, gap)
 
-    def _relate(
-        self,
-        found: dict[tuple[str, tuple[str, ...], int, int, int], Item],
-        relation: Concept,
-        ground: Item,
-        children: tuple[Item, Item],
-        score: float,
-    ) -> None:
-        objects, places = self.scene.related(relation, ground.objects)
+    def _event_order(self, parts: tuple[str, ...]) -> bool:
+        # An imperative begins or ends with its action: in between, two clauses would pass for one.
+        if parts[0] != "action" and "action" in parts[:-1]:
+            return False
+        return self._allowed("event", parts, usual=parts in USUAL_EVENTS)
+
+    def _extend_entity(self, found: Found, left: Item, right: Item, gap: float) -> None:
+        objects = left.objects & right.objects
+        if objects:
+            score = left.score + right.score + gap
+            parts, children = (*left.parts, right.label), (*left.children, right)
+            _keep(found, Item("entity*", parts, left.first, right.after, objects, 0, -1, score, children))
+
+    def _relate(self, found: Found, relation: Item, ground: Item, children: tuple[Item, Item], gap: float) -> None:
+        if relation.concept is None:
+            return
+        objects, places = self.scene.related(relation.concept, ground.objects)
         if not objects and not places:
             return
         parts = (children[0].label, children[1].label)
-        score += self._weight("spatial-relation", parts)
-        item = Item(
-            "spatial-relation", parts, children[0].first, children[1].after, objects, places, -1, score, children
-        )
-        _keep(found, item)
+        score = children[0].score + children[1].score + gap + self._weight("spatial-relation", parts)
+        first, after = children[0].first, children[1].after
+        _keep(found, Item("spatial-relation", parts, first, after, objects, places, -1, score, children))
 
-    def _extend_event(
-        self, found: dict[tuple[str, tuple[str, ...], int, int, int], Item], left: Item, right: Item, score: float
-    ) -> None:
-        parts = (*left.parts, right.label)
-        if right.label != "action" and parts[0] != "action" and "action" in parts:
-            return  # an imperative begins or ends with its action: in between, two clauses would pass for one
-        if not self._allowed(
-            "event",
-            parts,
-            usual=parts in (("action", "entity"), ("action", "entity", "destination"), ("action", "destination")),
-        ):
-            return
+    def _extend_event(self, found: Found, left: Item, right: Item, gap: float) -> None:
         objects = right.objects if right.label == "entity" else left.objects
         places = right.places if right.label == "destination" else left.places
         action = right.action if right.label == "action" else left.action
-        item = Item("event*", parts, left.first, right.after, objects, places, action, score, (*left.children, right))
-        _keep(found, item)
+        score = left.score + right.score + gap
+        parts, children = (*left.parts, right.label), (*left.children, right)
+        _keep(found, Item("event*", parts, left.first, right.after, objects, places, action, score, children))
 
-    def _sequence(
-        self, found: dict[tuple[str, tuple[str, ...], int, int, int], Item], left: Item, right: Item, score: float
-    ) -> None:
+    def _sequence(self, found: Found, left: Item, right: Item, gap: float) -> None:
         action = self.actions.composed.get((left.action, right.action))
-        if action is None or "entity" not in left.parts or left.places:
-            return
         objects = left.objects & right.objects if "entity" in right.parts else left.objects
-        if not objects or not right.places:
+        if action is None or not objects:
             return
-        score += self._weight("sequence", ("event", "event"))
-        item = Item(
-            "sequence", ("event", "event"), left.first, right.after, objects, right.places, action, score, (left, right)
-        )
-        _keep(found, item)
+        parts = ("event", "event")
+        score = left.score + right.score + gap + self._weight("sequence", parts)
+        children = (left, right)
+        _keep(found, Item("sequence", parts, left.first, right.after, objects, right.places, action, score, children))
 
-    def _close(self, found: dict[tuple[str, tuple[str, ...], int, int, int], Item]) -> None:
+    def _close(self, found: Found) -> None:
         """Apply unary steps: begin and complete entities, destinations and events."""
         for item in list(found.values()):
             if item.label in PROPERTIES and item.objects:
-                start = Item("entity*", (item.label,), item.first, item.after, item.objects, 0, -1, item.score, (item,))
-                _keep(found, start)
+                self._over(found, item, "entity*", (item.label,), item.objects, 0, 0.0, (item,))
             if item.label in ("location", "spatial-relation") and item.places:
-                score = item.score + self._weight("destination", (item.label,))
-                end = Item("destination", (item.label,), item.first, item.after, 0, item.places, -1, score, (item,))
-                _keep(found, end)
+                weight = self._weight("destination", (item.label,))
+                self._over(found, item, "destination", (item.label,), 0, item.places, weight, (item,))
         for item in list(found.values()):
             if item.label == "entity*":
-                score = item.score + self._weight("entity", item.parts)
-                _keep(
-                    found, Item("entity", item.parts, item.first, item.after, item.objects, 0, -1, score, item.children)
-                )
+                weight = self._weight("entity", item.parts)
+                self._over(found, item, "entity", item.parts, item.objects, 0, weight, item.children)
         for item in list(found.values()):
-            if item.label in EVENT_PARTS and self._allowed("event", (item.label,), usual=item.label == "action"):
-                _keep(
-                    found,
-                    Item(
-                        "event*",
-                        (item.label,),
-                        item.first,
-                        item.after,
-                        item.objects,
-                        item.places,
-                        item.action,
-                        item.score,
-                        (item,),
-                    ),
-                )
+            if item.label in EVENT_PARTS and self._event_order((item.label,)):
+                self._over(found, item, "event*", (item.label,), item.objects, item.places, 0.0, (item,))
         for item in list(found.values()):
             if item.label == "event*" and "action" in item.parts and len(item.parts) > 1:
-                score = item.score + self._weight("event", item.parts)
-                _keep(
-                    found,
-                    Item(
-                        "event",
-                        item.parts,
-                        item.first,
-                        item.after,
-                        item.objects,
-                        item.places,
-                        item.action,
-                        score,
-                        item.children,
-                    ),
-                )
+                weight = self._weight("event", item.parts)
+                self._over(found, item, "event", item.parts, item.objects, item.places, weight, item.children)
+
+    def _over(
+        self,
+        found: Found,
+        item: Item,
+        label: str,
+        parts: tuple[str, ...],
+        objects: int,
+        places: int,
+        weight: float,
+        children: tuple[Item, ...],
+    ) -> None:
+        score = item.score + weight
+        _keep(found, Item(label, parts, item.first, item.after, objects, places, item.action, score, children))
 
     def _outcome(self, item: Item) -> tuple[int, int, int] | None:
         """Give action, movable objects and free places of a root item; None when the scene does not allow it."""
@@ -373,14 +351,8 @@ class Chart:
         return (action, moved, places) if places else None
 
 
-def _keep(found: dict[tuple[str, tuple[str, ...], int, int, int], Item], item: Item) -> None:
-    key = (
-        item.label,
-        item.parts,
-        item.objects,
-        item.places,
-        item.action if item.concept is None else hash(item.concept),
-    )
+def _keep(found: Found, item: Item) -> None:
+    key = (item.label, item.parts, item.objects, item.places, item.action, item.concept)
     known = found.get(key)
     if known is None or known.score < item.score:
         found[key] = item

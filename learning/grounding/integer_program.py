@@ -15,7 +15,7 @@ Pair = tuple[str, Concept]
 def select_groundings(strengths: Mapping[Pair, float], epsilon: float = EPSILON) -> set[Pair]:
     """Choose the pairs A(δ, v) = 1 that maximise Σ A(δ, v) K(δ, v) (equation 4.2).
 
-    Constraints: at most a share `epsilon` of all pairs is chosen (sparsity), and every concept gets at least one n-gram.
+    Constraints: at most a share `epsilon` of all pairs is chosen (sparsity), every concept gets one n-gram or more.
     Where both cannot hold (fewer pairs allowed than there are concepts) the sparsity bound gives way.
 
     Args:

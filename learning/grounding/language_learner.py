@@ -10,8 +10,8 @@ from learning.concept_id import Concept
 from learning.grammar.actions import ActionTable
 from learning.grammar.chart import Chart, Reading
 from learning.grammar.pcfg import Pcfg
-from learning.grammar.scene import SceneSets
 from learning.grammar.preferences import MOVES_FEATURE, Preferences, lexical_feature, rule_feature, skip_feature
+from learning.grammar.scene import SceneSets
 from learning.grounding.case_analysis import filter_hypotheses
 from learning.grounding.correlation import CorrelationMatrix
 from learning.grounding.grounding import Grounding
@@ -125,9 +125,11 @@ class LanguageLearner:
                     self.grounding.add(ngram, leaf.concept, amount)
                     self.grammar.add_terminal(leaf.label, ngram, amount)
             for ngram, spans in every.items():
-                if ngram not in used and ngram in self.grounding.counts or " " not in ngram and ngram not in used:
-                    if " " in ngram or any(first not in covered for first, _ in spans):
-                        self.grounding.add(ngram, None, amount)
+                if ngram in used:
+                    continue
+                passed_over = any(first not in covered for first, _ in spans)
+                if passed_over if " " not in ngram else ngram in self.grounding.counts:
+                    self.grounding.add(ngram, None, amount)
             self.grammar.add_rule("command", (reading.item.label,), amount)
             for left, right in reading.item.tree().rules():
                 self.grammar.add_rule(left, right, amount)

@@ -38,6 +38,7 @@ def lexical_entries(
         grounding: Φ so far.
         preferences: Weights beside Φ.
         candidates: While learning, hypotheses that passed the filter, with their strength K; None when interpreting.
+        meant: While learning, each word's strongest association; the stronger, the less it is a function word.
 
     Returns:
         Lexical entries, and the log probability of passing over each word, (n_words,).
