@@ -1,6 +1,7 @@
 """Making collections of scripted demos: random scenes and tasks, recorded over several processes."""
 
 import os
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -15,6 +16,9 @@ from executor.errors import InputError
 
 COLLECTIONS = ("board",)
 """Collections that can be made from a seed."""
+
+PARTIAL = ".partial"
+"""Suffix of a demo that is being recorded; it opens like any other when the recording was cut short."""
 
 Job = TypeVar("Job")
 Done = TypeVar("Done")
@@ -60,17 +64,21 @@ def record_board(folder: Path, seed: int, robot: str | None, number: int) -> Rec
     """
     from time import perf_counter
 
-    from teleop import ScriptedOperator, random_task, record_demo
+    from teleop import ScriptedOperator, random_task, record_demo, write_truth
     from twin import World, random_board
 
     begun = perf_counter()
     rng = np.random.default_rng([seed, number])
     asked = random_task(random_board(rng, seed=seed), rng)
     path = demo_path(folder, "board", seed, number)
+    partial_path = path.with_suffix(PARTIAL)
     with World.from_scene(asked.scene, robot=robot) as world:
         operator = ScriptedOperator(asked.task, rng)
-        record_demo(world, operator, path, utterances=(asked.sentence,), truth=asked.truth())
-        return Recorded(path, asked.sentence, asked.kind, world.time, perf_counter() - begun)
+        record_demo(world, operator, partial_path, utterances=(asked.sentence,))
+        simulated = world.time
+    write_truth(path, asked.truth())
+    os.replace(partial_path, path)
+    return Recorded(path, asked.sentence, asked.kind, simulated, perf_counter() - begun)
 
 
 def record_collection(
@@ -121,7 +129,7 @@ def in_processes(
             yield index, work(job)
             on_done()
         return
-    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(processes, get_context("spawn"), initializer=_leave_interrupts_to_parent) as pool:
         waiting = {pool.submit(work, job): index for index, job in enumerate(jobs)}
         try:
             for future in as_completed(waiting):
@@ -129,3 +137,7 @@ def in_processes(
                 on_done()
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _leave_interrupts_to_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

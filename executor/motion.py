@@ -134,7 +134,9 @@ class Motion:
             position, velocity, _ = segment.at(float(time))
             found = robot.inverse_kinematics(position, start=joints)
             joints = found.q
-            rate: FloatArray = np.linalg.solve(robot.jacobian(joints)[:3], velocity) if found.success else last
+            rate: FloatArray = last
+            if found.success:
+                rate = np.asarray(np.linalg.solve(robot.jacobian(joints)[:3], velocity), dtype=np.float64)
             slower = max(slower, float((np.abs(rate) / (0.9 * robot.velocity)).max()))
             slower = max(slower, float(np.sqrt((np.abs(rate - last) / step / (0.9 * robot.acceleration)).max())))
             last = rate

@@ -10,6 +10,12 @@ from executor.sight import Sight
 from learning.graphs import ActionGraphlet, GraphletState
 from twin import board
 
+State = GraphletState
+APART, TOUCH, GRIP, CARRIED = State(False, False, 0), State(False, True, 0), State(True, True, 0), State(True, True, 1)
+PUT, LEFT = State(False, True, 1), State(False, False, 1)
+TAKE = ActionGraphlet((APART, TOUCH, GRIP, CARRIED))
+DROP = ActionGraphlet((GRIP, CARRIED, PUT, LEFT))
+MOVE = ActionGraphlet((APART, TOUCH, GRIP, CARRIED, PUT, LEFT))
 GOAL = board.cell_centre(5, 2, 0)
 
 
@@ -42,9 +48,10 @@ def test_take_closes_and_never_lets_go() -> None:
 
 
 def test_drop_starts_with_what_is_held() -> None:
-    assert words(plan(DROP, held=True)) == ["lift", "carry", "lower", "open", "retreat"] or words(
-        plan(DROP, held=True)
-    ) == ["carry", "lower", "open", "retreat"]
+    assert words(plan(DROP, held=True)) in (
+        ["lift", "carry", "lower", "open", "retreat"],
+        ["carry", "lower", "open", "retreat"],
+    )
 
 
 def test_move_does_both() -> None:
