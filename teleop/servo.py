@@ -94,12 +94,9 @@ class Servo:
         self._upper = (robot.upper - POSITION_MARGIN).tolist()
         self._acceleration = robot.acceleration.tolist()
         self._profile = VelocityProfile(robot.acceleration.tolist(), robot.jerk.tolist())
-        # Slowing down along v = gain * distance decelerates by gain * v; a quarter of the ratio of jerk to acceleration
-        # keeps its jerk, gain² * v, well inside the limit.
-        self._gain = [
-            0.25 * min(jerk / acceleration, 2.0 * acceleration / velocity)
-            for jerk, acceleration, velocity in zip(robot.jerk, robot.acceleration, robot.velocity, strict=True)
-        ]
+        # Towards a position limit at distance d, speed is held to min(gain * d, sqrt(acceleration * d)): half of the
+        # acceleration limit at speed, and a jerk of gain² * v at the end, which this gain keeps well inside its limit.
+        self._gain = (0.4 * robot.jerk / robot.acceleration).tolist()
 
     def reset(self, state: ServoState | None = None) -> None:
         """Forget what was commanded, or take it from elsewhere."""
@@ -182,7 +179,7 @@ class Servo:
             reason, detail = ServoReason.VELOCITY_LIMIT, self.robot.joint_names[worst]
         for i, v in enumerate(wanted):
             distance = max(self._upper[i] - positions[i] if v > 0.0 else positions[i] - self._lower[i], 0.0)
-            allowed = self._gain[i] * distance
+            allowed = min(self._gain[i] * distance, math.sqrt(self._acceleration[i] * distance))
             if abs(v) > allowed:
                 wanted[i] = allowed if v > 0.0 else -allowed
                 reason, detail = ServoReason.POSITION_LIMIT, self.robot.joint_names[i]
