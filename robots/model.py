@@ -37,6 +37,7 @@ class RobotModel:
     """A robot read from a folder with `robot.toml` and a URDF. Use `load_robot` to get one.
 
     Attributes:
+        folder: The folder it was read from.
         name: Name of the robot.
         description: One line about it.
         urdf_path: The URDF file.

@@ -251,10 +251,6 @@ class Physics:
         pose: RawPose = pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client)
         return pose
 
-    def reset_base(self, body: int, pose: RawPose) -> None:
-        """Place a body at rest; only before a world starts."""
-        pybullet.resetBasePositionAndOrientation(body, pose[0], pose[1], physicsClientId=self._client)
-
     def link_pose(self, body: int, link: int) -> RawPose:
         """Pose of a link's frame (that of the URDF) in the world."""
         state = pybullet.getLinkState(body, link, computeForwardKinematics=True, physicsClientId=self._client)
