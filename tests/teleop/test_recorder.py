@@ -12,7 +12,7 @@ from teleop.servo import ServoReason, ServoResult
 from twin import ObjectState, SceneSpec, WorldState
 
 RATE = 240
-AWKWARD = np.array([0.1, 1 / 3, -2.0**-1074, 1e308, np.nextafter(1.0, 2.0), -0.0, 5e-324])
+AWKWARD = np.array([0.1, 1 / 3, -(2.0**-1074), 1e308, np.nextafter(1.0, 2.0), -0.0, 5e-324])
 """Floats that a careless decimal notation would not bring back."""
 
 
@@ -138,7 +138,10 @@ def test_a_crash_loses_at_most_the_last_second(tmp_path: Path, small_scene: Scen
 def test_leaving_through_an_exception_keeps_everything_but_says_so(tmp_path: Path, small_scene: SceneSpec) -> None:
     rng = np.random.default_rng(0)
     path = tmp_path / "stopped.mcap"
-    with pytest.raises(KeyboardInterrupt, match="stop"), Recorder(path, small_scene, GamepadMapping(), RATE) as recorder:
+    with (
+        pytest.raises(KeyboardInterrupt, match="stop"),
+        Recorder(path, small_scene, GamepadMapping(), RATE) as recorder,
+    ):
         recorder.state(0, state_of(0, rng))
         for step in range(13):
             recorder.control(step, GamepadState(), result_of(rng), 0.0)
