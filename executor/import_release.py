@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 MOST_JOBS = 64
 _PARTIAL = ".partial"
-_MAGIC = bytes((0x89, 0x4D, 0x43, 0x41, 0x50, 0x30, 0x0D, 0x0A))
-"""At both ends of a whole MCAP file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,18 +277,14 @@ def _truth(job: _Job, outcome: SceneOutcome) -> dict[str, Any]:
 
 def _kept(number: int, path: Path) -> SceneOutcome | None:
     """The outcome of a demo that is already there and whole, or None."""
-    from teleop.errors import DemoError
-    from teleop.truth import read_truth
+    from teleop import DemoError, is_whole, read_truth
 
+    if not is_whole(path):
+        return None
     try:
-        with path.open("rb") as file:
-            start = file.read(len(_MAGIC))
-            file.seek(-len(_MAGIC), os.SEEK_END)
-            if start != _MAGIC or file.read() != _MAGIC:
-                return None
         truth = read_truth(path)
         return SceneOutcome(number, bool(truth["right"]), str(truth["reason"]), float(truth["simulated"]), 0.0, True)
-    except (OSError, DemoError, KeyError, TypeError, ValueError):
+    except (DemoError, KeyError, TypeError, ValueError):
         return None
 
 

@@ -19,7 +19,7 @@ from .gamepad_mapping import GamepadMapping, TwistCommand
 
 if TYPE_CHECKING:
     from .demo import Demo
-    from .demo_reader import IncompleteDemoWarning, load_demo, load_demos
+    from .demo_reader import IncompleteDemoWarning, is_whole, load_demo, load_demos
     from .record import Operator, record_demo
     from .recorder import Recorder
     from .replay import ReplayReport, check_replay
@@ -45,6 +45,7 @@ _LAZY = {
     "Session": "session",
     "Task": "task",
     "check_replay": "replay",
+    "is_whole": "demo_reader",
     "load_demo": "demo_reader",
     "load_demos": "demo_reader",
     "random_task": "sentences",
@@ -76,6 +77,7 @@ __all__ = [
     "TeleopError",
     "TwistCommand",
     "check_replay",
+    "is_whole",
     "load_demo",
     "load_demos",
     "random_task",

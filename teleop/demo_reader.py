@@ -1,6 +1,7 @@
 """Reading demos back, also those that end in the middle."""
 
 import json
+import os
 import struct
 import warnings
 from collections.abc import Iterator
@@ -93,6 +94,17 @@ def load_demos(directory: str | Path) -> Iterator[Demo]:
     if not paths:
         raise DemoError(f"{folder}: holds no demo (*{SUFFIX})")
     return (load_demo(path) for path in paths)
+
+
+def is_whole(path: str | Path) -> bool:
+    """Whether a file has both ends of a whole demo; much quicker than reading it, and false if it cannot be read."""
+    try:
+        with Path(path).open("rb") as file:
+            start = file.read(MAGIC_SIZE)
+            file.seek(-MAGIC_SIZE, os.SEEK_END)
+            return start == MCAP0_MAGIC == file.read()
+    except OSError:
+        return False
 
 
 class _Reading:

@@ -69,7 +69,7 @@ def record_demo(
     """
     if world.time != 0.0:
         raise TeleopError(
-            f"a demo starts with its scene, but this world is already {world.time:.2f} s old: make a new one"
+            f"a demo starts with its scene, but this world is already {world.time:.3f} s old: make a new one"
         )
     path = Path(path)
     session = Session(world, mapping)

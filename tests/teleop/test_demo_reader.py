@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import Writer
 
-from teleop import Demo, DemoError, IncompleteDemoWarning, load_demo, load_demos
+from teleop import Demo, DemoError, IncompleteDemoWarning, is_whole, load_demo, load_demos
 
 SHARED_FILES = [HealthCheck.function_scoped_fixture]
 """The files that examples share are written anew by each of them."""
@@ -45,6 +45,7 @@ def test_a_cut_loses_no_whole_chunk(demo_bytes: bytes, small_demo: Demo, tmp_pat
     path.write_bytes(demo_bytes[:-1])
     with pytest.warns(IncompleteDemoWarning, match=r"nearly\.mcap: ends early; recovered"):
         demo = load_demo(path)
+    assert (is_whole(small_demo.path), is_whole(path), is_whole(tmp_path)) == (True, False, False)
     assert len(demo.inputs) == len(small_demo.inputs)
     assert demo.utterances == small_demo.utterances
 

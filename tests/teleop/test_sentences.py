@@ -16,13 +16,12 @@ CORNERS = {"front left": (7, 7), "front right": (7, 0), "back left": (0, 7), "ba
 BESIDE = {"left of": (0, 1), "right of": (0, -1), "in front of": (1, 0), "behind": (-1, 0)}
 VERBS = "put down|pick up|put|place|move|take|grab|lift|drop|release"
 LOOK = r"the (?:(?P<{0}colour>\w+) )?(?P<{0}shape>cube|block|brick|prism|pyramid)"
-CLAUSE = (
-    r"(?: that is (?:in the (?P<{0}corner>\w+ \w+) corner|on(?: top of)? " + LOOK.replace("{0}", "{0}below_") + "))?"
-)
-PHRASE = LOOK + CLAUSE
+BELOW = LOOK.replace("{0}", "{0}below_")
+PHRASE = LOOK + r"(?: that is (?:in the (?P<{0}corner>\w+ \w+) corner|on(?: top of)? " + BELOW + "))?"
+PLACE = r"(?P<on>on top of|onto|on)|(?:to the )?(?P<beside>left of|right of|in front of|behind)"
 SENTENCE = re.compile(
     rf"(?P<verb>{VERBS}) {PHRASE.format('moved_')}(?: and (?:put|place|move) it)?"
-    rf"(?: (?:(?P<on>on top of|onto|on)|(?:to the )?(?P<beside>left of|right of|in front of|behind)) {PHRASE.format('to_')}"
+    rf"(?: (?:{PLACE}) {PHRASE.format('to_')}"
     rf"| in the (?P<goal_corner>\w+ \w+) corner)?"
 )
 
