@@ -32,10 +32,10 @@ def select_groundings(strengths: Mapping[Pair, float], epsilon: float = EPSILON)
     limit = max(int(epsilon * len(strengths)), len(columns))
     problem = pulp.LpProblem("groundings", pulp.LpMaximize)
     pairs = [pair for column in columns.values() for pair in column]
-    chosen = {pair: pulp.LpVariable(f"a{index}", cat=pulp.LpBinary) for index, pair in enumerate(pairs)}
+    chosen = {pair: problem.add_variable(f"a{index}", cat=pulp.LpBinary) for index, pair in enumerate(pairs)}
     problem += pulp.lpSum(strengths[pair] * variable for pair, variable in chosen.items())
     problem += pulp.lpSum(chosen.values()) <= limit
     for column in columns.values():
         problem += pulp.lpSum(chosen[pair] for pair in column) >= 1
-    problem.solve(pulp.HiGHS(msg=False))
+    problem.solve(pulp.HiGHS(msg=False, threads=1))
     return {pair for pair, variable in chosen.items() if (variable.value() or 0.0) > 0.5}

@@ -17,14 +17,16 @@ from learning.grounding.correlation import CorrelationMatrix
 from learning.grounding.grounding import Grounding
 from learning.grounding.integer_program import Pair, select_groundings
 from learning.grounding.lexicon import lexical_entries
-from learning.grounding.ngrams import ngrams_of
-from learning.grounding.salience import salient_concepts
+from learning.grounding.ngrams import ngrams_of, parts_of
+from learning.grounding.salience import focal_concepts, salient_concepts
 from learning.percept import Percept, ShownAction
 
 LEAST_SHARE = 0.01
 """Readings whose share of the credit is smaller are not counted."""
 LEAST_STRENGTH = 0.05
 """Pairs with a weaker correlation are no hypotheses."""
+COMPARABLE = 0.85
+"""A part of an n-gram with this share of its strength or more is a hypothesis too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +59,7 @@ class LanguageLearner:
     def __init__(self) -> None:
         """Start knowing nothing."""
         self.correlation = CorrelationMatrix()
+        self.focus = CorrelationMatrix()
         self.grounding = Grounding()
         self.grammar = Pcfg()
         self.preferences = Preferences()
@@ -70,9 +73,10 @@ class LanguageLearner:
         ngrams = ngrams_of(words)
         salient = salient_concepts(percept, shown)
         self.correlation.observe(ngrams, salient)
+        self.focus.observe(ngrams, focal_concepts(percept, shown))
         candidates = self.hypotheses(list(ngrams), salient)
         entries, skip = lexical_entries(
-            words, self.grounding, self.preferences, candidates, {w: self.correlation.strongest(w) for w in set(words)}
+            words, self.grounding, self.preferences, candidates, {w: max(self.correlation.strongest(w), self.focus.strongest(w)) for w in set(words)}
         )
         chart = Chart(len(words), entries, skip, self.grammar, scene, actions, self.preferences)
         omega = VisionTree.of(shown)
@@ -83,16 +87,30 @@ class LanguageLearner:
         self._credit(words, validated, readings)
         return True
 
+    def strength(self, ngram: str, concept: Concept) -> float:
+        """K(δ, v) beyond chance, among all that was salient or among what was in focus, whichever is stronger."""
+        return max(
+            self.correlation.strength_beyond_chance(ngram, concept), self.focus.strength_beyond_chance(ngram, concept)
+        )
+
     def hypotheses(self, ngrams: list[str], salient: set[Concept]) -> dict[Pair, float]:
         """Select (4.2) and filter (4.3 to 4.6) grounding hypotheses for the n-grams and concepts at hand."""
         strengths = {
-            (ngram, concept): self.correlation.strength_beyond_chance(ngram, concept)
+            (ngram, concept): self.strength(ngram, concept)
             for ngram in ngrams
             for concept in salient
         }
         strengths = {pair: k if k >= LEAST_STRENGTH else 0.0 for pair, k in strengths.items()}
-        chosen = filter_hypotheses(select_groundings(strengths))
-        return {pair: strengths[pair] for pair in chosen}
+        chosen = select_groundings(strengths)
+        # The program takes the strongest pairs up to its bound, so of "red" and "the red", equally strong, it may have
+        # taken the longer alone; the cases of 4.3 to 4.6 are about both.
+        chosen |= {
+            (part, concept)
+            for ngram, concept in chosen
+            for part in parts_of(ngram)
+            if strengths.get((part, concept), 0.0) >= COMPARABLE * strengths[ngram, concept]
+        }
+        return {pair: strengths[pair] for pair in filter_hypotheses(chosen)}
 
     def log_weight(self, reading: Reading) -> float:
         """Log probability of a reading, not normalised, with the preference for readings that leave little open."""
@@ -137,6 +155,7 @@ class LanguageLearner:
     def rename(self, old: Concept, new: Concept) -> None:
         """Carry over all that was learned of a concept that turned out to be another."""
         self.correlation.rename(old, new)
+        self.focus.rename(old, new)
         self.grounding.rename(old, new)
         self.preferences.rename(f" = {old}", f" = {new}")
 
@@ -144,6 +163,7 @@ class LanguageLearner:
         """Plain numbers, lists and strings."""
         return {
             "correlation": self.correlation.to_json(),
+            "focus": self.focus.to_json(),
             "grounding": self.grounding.to_json(),
             "grammar": self.grammar.to_json(),
             "preferences": self.preferences.to_json(),
@@ -154,6 +174,7 @@ class LanguageLearner:
         """Rebuild; raises KeyError, TypeError or ValueError for what `to_json` did not write."""
         learner = cls()
         learner.correlation = CorrelationMatrix.from_json(data["correlation"])
+        learner.focus = CorrelationMatrix.from_json(data["focus"])
         learner.grounding = Grounding.from_json(data["grounding"])
         learner.grammar = Pcfg.from_json(data["grammar"])
         learner.preferences = Preferences.from_json(data["preferences"])

@@ -22,3 +22,14 @@ def ngrams_of(words: tuple[str, ...], longest: int = MAX_N) -> dict[str, list[Sp
         for after in range(first + 1, min(first + longest, len(words)) + 1):
             found.setdefault(" ".join(words[first:after]), []).append((first, after))
     return found
+
+
+def parts_of(ngram: str) -> list[str]:
+    """Give the shorter n-grams that an n-gram consists of."""
+    words = ngram.split(" ")
+    return [
+        " ".join(words[first:after])
+        for first in range(len(words))
+        for after in range(first + 1, len(words) + 1)
+        if after - first < len(words)
+    ]

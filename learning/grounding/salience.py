@@ -34,6 +34,20 @@ def salient_concepts(percept: Percept, shown: ShownAction) -> set[Concept]:
     return salient
 
 
+def focal_concepts(percept: Percept, shown: ShownAction) -> set[Concept]:
+    """Give the concepts of the action as a whole and of the moved object alone.
+
+    Every move contains a take, and most things land on a cube: what is nearly always salient cannot be told from
+    chance by `salient_concepts`, but it is not nearly always in focus.
+    """
+    focal = {Concept(ACTION_SPACE, shown.action)}
+    for space in OBJECT_SPACES:
+        number = int(percept.properties[space][shown.moved])
+        if number != NO_CONCEPT:
+            focal.add(Concept(space, number))
+    return focal
+
+
 def nearest_neighbours(percept: Percept, shown: ShownAction) -> list[int]:
     """Find what the moved object ends up nearest to: the block below it, or those right beside it."""
     related = [
