@@ -16,10 +16,12 @@ from robots.pose import FloatArray
 
 FRAMES = 8
 """Frames of a demo whose values are clustered, spread evenly: what rests looks the same in all the others."""
+HELD_FRAMES = 16
+"""Frames with a closed gripper that tell how far the gripper is from what it holds."""
 MOST_POINTS = 400
 """Values of a space that are clustered at most, drawn at random, so that a crowded scene takes no longer."""
-MOST_DISTANCES = 40
-"""Distances between objects that are clustered at most, beside the dozen between gripper and object."""
+MOST_DISTANCES = 60
+"""Distances between objects that are clustered at most, beside the score between gripper and object."""
 
 Values = tuple[FloatArray, NDArray[np.int64]]
 
@@ -119,7 +121,7 @@ def _gripper_offsets(observation: Observation) -> tuple[FloatArray, NDArray[np.i
     offset = observation.location[:, moved] - observation.gripper_location
     last = len(observation.times) - 1
     held = np.flatnonzero(observation.gripper_closed)
-    held = held[np.unique(np.linspace(0, len(held) - 1, FRAMES).round().astype(int))] if len(held) else held
+    held = held[np.unique(np.linspace(0, len(held) - 1, HELD_FRAMES).round().astype(int))] if len(held) else held
     ends = np.unique([0, min(1, last), max(0, last - 1), last])
     chosen = np.unique(np.concatenate([held, ends]))
     # A track that is near and far in turn is no mode of its own: number the near and the far part apart.

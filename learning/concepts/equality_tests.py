@@ -7,10 +7,13 @@ clustered samples (Kish's design effect): n values in m demos with intraclass co
 
     n_eff = n / (1 + (n / m - 1) r),
 
-at most m / r. It grows with the number of demos, so that different concepts stay apart ever more surely as learning
-goes on, while the light of one demo is never taken for a new colour. The covariance floor of each space, which is
-part of every covariance, is known rather than estimated: it counts as a prior worth `PRIOR_VALUES` values. Without it
-a place seen for a frame or two, whose spread nobody can estimate, would equal any other.
+at most m / r, and at most `LARGEST_SIZE`: with enough demos any difference becomes significant, and two halves of the
+reds that were seen in different light would stay two concepts for ever. The cap says how small a difference, in
+standard deviations, is no difference in kind.
+
+The covariance floor of each space, which is part of every covariance, is known rather than estimated: it counts as a
+prior worth `PRIOR_VALUES` values. Without it a place seen for a frame or two, whose spread nobody can estimate, would
+equal any other.
 """
 
 from collections.abc import Sequence
@@ -22,9 +25,12 @@ from scipy.special import chdtrc, fdtrc
 from learning.concepts.gaussian import Gaussian
 from robots.pose import FloatArray
 
-SHAPE_CORRELATION = 0.05
+SPREAD_CORRELATION = 0.05
 """Intraclass correlation used for covariances: n values of a demo tell at most 20 values' worth about its spread."""
-
+LARGEST_SIZE = 10.0
+"""Most that a mean's effective size can be."""
+LARGEST_SPREAD_SIZE = 20.0
+"""Most that a covariance's effective size can be."""
 PRIOR_VALUES = 40
 """What the covariance floor is worth in the degrees of freedom of the pooled covariance."""
 
@@ -60,9 +66,9 @@ class Statistics:
         )
 
 
-def effective_size(count: FloatArray, demos: FloatArray, correlation: float) -> FloatArray:
-    """Effective number of independent values of `count` values from `demos` demos."""
-    return np.asarray(count / (1.0 + np.maximum(count / demos - 1.0, 0.0) * correlation))
+def effective_size(count: FloatArray, demos: FloatArray, correlation: float, largest: float) -> FloatArray:
+    """Effective number of independent values of `count` values from `demos` demos, at most `largest`."""
+    return np.minimum(count / (1.0 + np.maximum(count / demos - 1.0, 0.0) * correlation), largest)
 
 
 def covariance_p_values(new: Statistics, old: Statistics, diagonal: bool) -> FloatArray:
@@ -84,8 +90,7 @@ def covariance_p_values(new: Statistics, old: Statistics, diagonal: bool) -> Flo
         (A, K) in 0..1.
     """
     size = _harmonic(
-        effective_size(new.counts, new.demos, SHAPE_CORRELATION),
-        effective_size(old.counts, old.demos, SHAPE_CORRELATION),
+        *(effective_size(one.counts, one.demos, SPREAD_CORRELATION, LARGEST_SPREAD_SIZE) for one in (new, old))
     )
     return np.minimum(
         _w_p_values(new.covariances, old.precisions, size, diagonal),
@@ -120,9 +125,7 @@ def mean_p_values(new: Statistics, old: Statistics, correlation: float, diagonal
         share = share[..., None]
         pooled = share * new.covariances[:, None] + (1.0 - share) * old.covariances[None]
         distance = np.sum(difference * np.linalg.solve(pooled, difference[..., None])[..., 0], axis=2)
-    size = _harmonic(
-        effective_size(new.counts, new.demos, correlation), effective_size(old.counts, old.demos, correlation)
-    )
+    size = _harmonic(*(effective_size(one.counts, one.demos, correlation, LARGEST_SIZE) for one in (new, old)))
     freedom = total - 2.0 + PRIOR_VALUES
     f_statistic = size * distance * (freedom - dimension + 1.0) / (freedom * dimension)
     return np.asarray(fdtrc(float(dimension), freedom - dimension + 1.0, f_statistic))

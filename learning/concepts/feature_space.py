@@ -10,7 +10,7 @@ import numpy as np
 
 from robots.pose import FloatArray
 
-NEAR = 0.086
+NEAR = 0.0845
 """Objects whose centres are closer than this relate to one another [m]: a bit more than twice the side of a block, so
 that a block relates to those in the cells around, above and below it, diagonals included."""
 FAR = 0.13
@@ -127,10 +127,10 @@ class Distance(FeatureSpace):
 
     name = "distance"
     dimension = 1
-    grain = 0.006
+    grain = 0.004
     floor = 0.008
     resolution = 0.018
-    correlation = 0.5
+    correlation = 0.4
 
     @staticmethod
     def embed(values: FloatArray) -> FloatArray:

@@ -38,6 +38,7 @@ class IncrementalMixture:
         self._components: dict[int, Gaussian] = {}
         self._aliases: dict[int, int] = {}
         self._next_number = 0
+        self._demos = 0
         self._prepared: tuple[NDArray[np.int64], FloatArray, FloatArray] | None = None
 
     @property
@@ -75,6 +76,8 @@ class IncrementalMixture:
         """
         if not components:
             return []
+        self._demos += 1
+        first_new = self._next_number
         matches: list[int | None] = [None] * len(components)
         if self._components:
             known = list(self._components)
@@ -95,9 +98,11 @@ class IncrementalMixture:
                 self._components[number] = self._shaped(merged(kept, component, kept.demos + (number not in seen)))
             seen.add(number)
             numbers.append(number)
-        self._merge_equivalent(seen)
+        self._merge_equivalent(seen, first_new)
         self._prepared = None
-        return [self.resolve(number) for number in numbers]
+        numbers = [self.resolve(number) for number in numbers]
+        renamed = self._close_gaps(first_new)
+        return [renamed.get(number, number) for number in numbers]
 
     def classify(self, values: FloatArray) -> NDArray[np.int64]:
         """Concept number with the smallest Mahalanobis distance (eq. 3.1) to each embedded value, (..., d) to (...).
@@ -128,6 +133,7 @@ class IncrementalMixture:
         """Plain numbers, lists and strings; `from_json` gives the same mixture back exactly."""
         rows, columns = self._kept_entries()
         return {
+            "demos": self._demos,
             "next": self._next_number,
             "aliases": {str(number): kept for number, kept in sorted(self._aliases.items())},
             "components": {
@@ -162,6 +168,7 @@ class IncrementalMixture:
             mixture._components[int(number)] = Gaussian(mean, covariance, float(entry["count"]), int(entry["demos"]))
         mixture._aliases = {int(number): int(kept) for number, kept in data["aliases"].items()}
         mixture._next_number = int(data["next"])
+        mixture._demos = int(data["demos"])
         if any(kept >= number for number, kept in mixture._aliases.items()):
             raise ValueError(f"aliases of {space.name} must point to smaller numbers")
         return mixture
@@ -186,21 +193,36 @@ class IncrementalMixture:
         passed &= mean_p_values(first, second, self.space.correlation, self.space.diagonal) > SIGNIFICANCE
         return np.where(passed, mean_log_likelihoods(first, second), -np.inf)
 
-    def _merge_equivalent(self, changed: set[int]) -> None:
-        """Line 21: merge equivalent components. Pairs in which nothing changed were tested before."""
-        # Two components that changed may both be of this demo: together they are one sighting more, not two.
+    def _close_gaps(self, first_new: int) -> dict[int, int]:
+        """Number the components that came with this demo and stayed anew: nobody knows those merged at once."""
+        stayed = sorted(number for number in self._components if number >= first_new)
+        renamed = {number: first_new + index for index, number in enumerate(stayed)}
+        for number, new_number in renamed.items():  # downwards, so that none is overwritten
+            self._components[new_number] = self._components.pop(number)
+        self._aliases = {gone: kept for gone, kept in self._aliases.items() if gone < first_new}
+        self._next_number = first_new + len(stayed)
+        return renamed
+
+    def _merge_equivalent(self, changed: set[int], first_new: int) -> None:
+        """Line 21: merge equivalent components. Pairs in which nothing changed were tested before.
+
+        Two components that are both new were told apart by BIC in one light, which the tests would allow for.
+        """
         while changed:
             numbers, rows = list(self._components), sorted(changed)
             components = list(self._components.values())
             likelihood = self._equivalents([self._components[number] for number in rows], components)
             likelihood[np.arange(len(rows)), [numbers.index(number) for number in rows]] = -np.inf
+            both_new = (np.array(rows) >= first_new)[:, None] & (np.array(numbers) >= first_new)
+            likelihood[both_new] = -np.inf
             row, column = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
             if likelihood[row, column] == -np.inf:
                 return
             number, match = rows[row], numbers[column]
             kept, gone = min(number, match), max(number, match)
             first, second = self._components[kept], self._components.pop(gone)
-            shared = 1 if gone in changed and kept in changed else 0
-            self._components[kept] = self._shaped(merged(first, second, first.demos + second.demos - shared))
+            # Some demos may have shown both; which ones was not kept.
+            demos = min(first.demos + second.demos, self._demos)
+            self._components[kept] = self._shaped(merged(first, second, demos))
             self._aliases[gone] = kept
             changed = (changed - {gone}) | {kept}

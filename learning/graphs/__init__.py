@@ -7,13 +7,13 @@ from learning.graphs.action_graphlet import ActionGraphlet, GraphletState
 from learning.graphs.action_library import ActionLibrary
 
 if TYPE_CHECKING:
-    from learning.graphs.action_states import action_graphlet
+    from learning.graphs.action_states import action_of
     from learning.graphs.graphlets import Graphlet
     from learning.graphs.state_graph import StateGraph
 
-__all__ = ["ActionGraphlet", "ActionLibrary", "Graphlet", "GraphletState", "StateGraph", "action_graphlet"]
+__all__ = ["ActionGraphlet", "ActionLibrary", "Graphlet", "GraphletState", "StateGraph", "action_of"]
 
-_HOMES = {"Graphlet": "graphlets", "StateGraph": "state_graph", "action_graphlet": "action_states"}
+_HOMES = {"Graphlet": "graphlets", "StateGraph": "state_graph", "action_of": "action_states"}
 
 
 def __getattr__(name: str) -> Any:

@@ -13,7 +13,7 @@ SHORTEST_STATE = 2
 """Frames that a qualitative state must last: a shorter one is noise, or changes that belong together."""
 
 
-def action_graphlet(observation: Observation, spaces: ConceptSpaces) -> ActionGraphlet:
+def action_of(observation: Observation, spaces: ConceptSpaces) -> ActionGraphlet:
     """Encode a demo as the sequence of states of its gripper and the object it manipulates.
 
     Frames carry noise and a driven demo flickers: tracks are smoothed, each predicate must last for some frames, and

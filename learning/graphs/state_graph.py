@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from learning.concepts.concept_spaces import ConceptSpaces
 from learning.concepts.feature_space import FEATURE_SPACES, NEAR
 from learning.graphs.action_graphlet import ActionGraphlet
-from learning.graphs.action_states import SHORTEST_STATE, action_graphlet
+from learning.graphs.action_states import SHORTEST_STATE, action_of
 from learning.graphs.graphlets import ConceptNumber, Graphlet, graphlets_of
 from learning.graphs.smoothing import constant_runs, lasting, smoothed
 from learning.percept import NO_CONCEPT
@@ -61,7 +61,7 @@ class StateGraph:
         Raises:
             PerceptionError: Nothing was moved.
         """
-        action = action_graphlet(observation, spaces)
+        action = action_of(observation, spaces)
         moved = moved_object(observation)
         predicates = _Predicates(observation, spaces, moved)
         return cls(tuple(predicates.state(start) for start, _ in constant_runs(predicates.rows())), action)

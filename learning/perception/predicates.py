@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from learning.concepts.concept_spaces import ConceptSpaces
 from learning.concepts.feature_space import FEATURE_SPACES, NEAR, PROPERTIES, RELATIONS
-from learning.graphs.action_states import action_graphlet, touches
+from learning.graphs.action_states import action_of, touches
 from learning.percept import NO_CONCEPT, Percept, ShownAction
 from learning.perception.observation import Observation
 from learning.perception.placements import clear_objects, column_of, landing_places
@@ -31,7 +31,7 @@ def perceive(
         PerceptionError: Nothing was moved.
     """
     moved = moved_object(observation)
-    graphlet = action_graphlet(observation, spaces)
+    graphlet = action_of(observation, spaces)
     if learn_action:
         action = spaces.actions.match_or_add(graphlet)
     else:
