@@ -13,9 +13,10 @@ from typing import TypeVar
 import numpy as np
 
 from executor.errors import InputError
+from executor.quiet import load_physics
 
-COLLECTIONS = ("board",)
-"""Collections that can be made from a seed."""
+VARIETY = 0.25
+"""Usual probability of each word being a synonym of the plain one."""
 
 PARTIAL = ".partial"
 """Suffix of a demo that is being recorded; it opens like any other when the recording was cut short."""
@@ -53,13 +54,14 @@ def demo_path(folder: Path, collection: str, seed: int, number: int) -> Path:
     return folder / f"{collection}_{seed}_{number:04d}.mcap"
 
 
-def record_board(folder: Path, seed: int, robot: str | None, number: int) -> Recorded:
+def record_board(folder: Path, seed: int, robot: str | None, variety: float, number: int) -> Recorded:
     """Record one demo of a random task on a random board; the same seed and number give the same demo.
 
     Args:
         folder: Where to write it.
         seed: Seed of the collection.
         robot: Robot to use instead of the board arm.
+        variety: Probability of each word being a synonym of the plain one.
         number: Number of the demo in the collection.
     """
     from time import perf_counter
@@ -67,9 +69,9 @@ def record_board(folder: Path, seed: int, robot: str | None, number: int) -> Rec
     from teleop import ScriptedOperator, random_task, record_demo, write_truth
     from twin import World, random_board
 
-    begun = perf_counter()
+    begun = perf_counter()  # after the imports, which happen once in a process
     rng = np.random.default_rng([seed, number])
-    asked = random_task(random_board(rng, seed=seed), rng)
+    asked = random_task(random_board(rng, seed=seed), rng, variety=variety)
     path = demo_path(folder, "board", seed, number)
     partial_path = path.with_suffix(PARTIAL)
     with World.from_scene(asked.scene, robot=robot) as world:
@@ -87,6 +89,7 @@ def record_collection(
     seed: int,
     *,
     robot: str | None = None,
+    variety: float = VARIETY,
     jobs: int = 0,
     on_demo: Callable[[], None] = lambda: None,
 ) -> list[Recorded]:
@@ -97,6 +100,7 @@ def record_collection(
         count: How many.
         seed: Seed of scenes, tasks, sentences and the operator's hand.
         robot: Robot to use instead of the board arm.
+        variety: Probability of each word being a synonym of the plain one.
         jobs: Processes; 0 takes one a core.
         on_demo: Called after every demo.
 
@@ -106,7 +110,7 @@ def record_collection(
     there = [path for number in range(count) if (path := demo_path(folder, "board", seed, number)).exists()]
     if there:
         raise InputError(f"{there[0]} is there already; choose another folder or another --seed")
-    work = partial(record_board, folder, seed, robot)
+    work = partial(record_board, folder, seed, robot, variety)
     return [done for _, done in sorted(in_processes(work, range(count), jobs, on_demo), key=lambda pair: pair[0])]
 
 
@@ -129,7 +133,7 @@ def in_processes(
             yield index, work(job)
             on_done()
         return
-    with ProcessPoolExecutor(processes, get_context("spawn"), initializer=_leave_interrupts_to_parent) as pool:
+    with ProcessPoolExecutor(processes, get_context("spawn"), initializer=_start_worker) as pool:
         waiting = {pool.submit(work, job): index for index, job in enumerate(jobs)}
         try:
             for future in as_completed(waiting):
@@ -139,5 +143,7 @@ def in_processes(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _leave_interrupts_to_parent() -> None:
+def _start_worker() -> None:
+    """Leave interrupts to the parent, and be quiet."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    load_physics()

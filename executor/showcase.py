@@ -11,7 +11,7 @@ import numpy as np
 
 from executor.collection import Recorded, in_processes, record_board
 from executor.demo_files import open_demo
-from executor.trial import Trial, Verdict, run_trial
+from executor.trial import Trial, Verdict, new_task, run_trial
 from learning import Knowledge, Learner
 from learning.concepts import DemoConcepts, fit_demo
 from learning.perception import Observation, observe_demo
@@ -56,9 +56,9 @@ class Lessons:
     seconds: float
 
 
-def show_one(folder: Path, seed: int, robot: str | None, number: int) -> Shown:
+def show_one(folder: Path, seed: int, robot: str | None, variety: float, number: int) -> Shown:
     """Record one demo, read it back from its file, and perceive it."""
-    recorded = record_board(folder, seed, robot, number)
+    recorded = record_board(folder, seed, robot, variety, number)
     demo = open_demo(recorded.path)
     rng = np.random.default_rng([seed, number, 1])
     observation = observe_demo(demo, rng)
@@ -66,7 +66,7 @@ def show_one(folder: Path, seed: int, robot: str | None, number: int) -> Shown:
 
 
 def show_and_learn(
-    folder: Path, count: int, seed: int, robot: str | None, jobs: int, on_demo: Callable[[], None]
+    folder: Path, count: int, seed: int, robot: str | None, variety: float, jobs: int, on_demo: Callable[[], None]
 ) -> Lessons:
     """Record demos in several processes and learn from them in order, one at a time, as they come.
 
@@ -75,6 +75,7 @@ def show_and_learn(
         count: How many demos.
         seed: Seed of everything random.
         robot: Robot to use instead of the board arm.
+        variety: Probability of each word being a synonym of the plain one.
         jobs: Processes; 0 takes one a core.
         on_demo: Called after every demo.
     """
@@ -86,7 +87,7 @@ def show_and_learn(
     waiting: dict[int, Shown] = {}
     recorded: list[Recorded] = []
     sentences = validated = 0
-    for index, shown in in_processes(partial(show_one, fresh, seed, robot), range(count), jobs, on_demo):
+    for index, shown in in_processes(partial(show_one, fresh, seed, robot, variety), range(count), jobs, on_demo):
         waiting[index] = shown
         while len(recorded) in waiting:  # in order, so that the same seed learns the same
             each = waiting.pop(len(recorded))
@@ -103,16 +104,16 @@ def try_commands(
     count: int,
     seed: int,
     robot: str | None,
+    variety: float,
     jobs: int,
     view_size: tuple[int, int],
     on_trial: Callable[[], None],
 ) -> list[Verdict]:
     """Try new commands in new scenes, in several processes; the first move is filmed."""
-    from executor.trial import new_task
-
-    first_move = next((n for n in range(count) if new_task(seed + TRIAL_SEEDS, n).kind == "move"), 0)
+    kinds = [new_task(seed + TRIAL_SEEDS, number, variety).kind for number in range(count)]
+    first_move = kinds.index("move") if "move" in kinds else 0
     trials = [
-        Trial(seed + TRIAL_SEEDS, number, knowledge, robot, view_size, filmed=number == first_move)
+        Trial(seed + TRIAL_SEEDS, number, knowledge, robot, variety, view_size, filmed=number == first_move)
         for number in range(count)
     ]
     done = in_processes(run_trial, trials, jobs, on_trial)

@@ -30,6 +30,7 @@ class Trial:
         number: Number of this one; scene and sentence follow from both.
         knowledge: Knowledge file to use.
         robot: Robot to use instead of the board arm.
+        variety: Probability of each word being a synonym of the plain one.
         view_size: Width and height of views before and after; None takes none.
         filmed: Whether to take views all the way.
     """
@@ -37,7 +38,8 @@ class Trial:
     seed: int
     number: int
     knowledge: Path
-    robot: str | None = None
+    robot: str | None
+    variety: float
     view_size: tuple[int, int] | None = None
     filmed: bool = False
 
@@ -79,17 +81,17 @@ class FilmedWorld(World):
             self.views = (*self.views, self.render(*self.size))
 
 
-def new_task(seed: int, number: int) -> "DescribedTask":
+def new_task(seed: int, number: int, variety: float) -> "DescribedTask":
     """Make a task with a sentence on a board of its own; equal for equal seed and number."""
     from teleop import random_task
 
     rng = np.random.default_rng([seed, number])
-    return random_task(random_board(rng, seed=seed), rng)
+    return random_task(random_board(rng, seed=seed), rng, variety=variety)
 
 
 def run_trial(trial: Trial) -> Verdict:
     """Say a new sentence in a new scene, and judge what comes of it by the true state of the world."""
-    asked = new_task(trial.seed, trial.number)
+    asked = new_task(trial.seed, trial.number, trial.variety)
     knowledge = Knowledge.load(trial.knowledge)
     with FilmedWorld.from_scene(asked.scene, robot=trial.robot) as world:
         views: list[Picture] = [world.render(*trial.view_size)] if trial.view_size else []

@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     from executor.showcase import Lessons
     from executor.trial import Verdict
 
-DEMOS = 160
+DEMOS = 200
 COMMANDS = 12
+VARIETY = 0.1
 ENOUGH = 0.9
 """Share of commands that must go right for exit code 0."""
 VIEW_SIZE = (400, 300)
@@ -27,6 +28,9 @@ def demo(
     demos: Annotated[int, typer.Option(min=1, help="How many demos to record.")] = DEMOS,
     commands: Annotated[int, typer.Option(min=1, help="How many new commands to try.")] = COMMANDS,
     robot: Annotated[str | None, typer.Option(help="Robot to use instead of the board arm.")] = None,
+    variety: Annotated[
+        float, typer.Option(min=0.0, max=1.0, help="How often the operator uses another word for the same thing.")
+    ] = VARIETY,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")] = 0,
     seed: Seed = 0,
     as_json: Json = False,
@@ -46,14 +50,14 @@ def demo(
     folder = new_folder(output)
     begun = perf_counter()
     with out.progress("showing, telling and learning", demos) as advance:
-        lessons = show_and_learn(folder / "demos", demos, seed, robot, jobs, advance)
+        lessons = show_and_learn(folder / "demos", demos, seed, robot, variety, jobs, advance)
     knowledge = folder / "knowledge.json"
     lessons.knowledge.save(knowledge)
     _tell_lessons(out, lessons)
     tell_words(out, lessons.knowledge)
     trying = perf_counter()
     with out.progress("doing new commands", commands) as advance:
-        verdicts = try_commands(knowledge, commands, seed, robot, jobs, VIEW_SIZE, advance)
+        verdicts = try_commands(knowledge, commands, seed, robot, variety, jobs, VIEW_SIZE, advance)
     tried = perf_counter() - trying
     right = sum(verdict.right for verdict in verdicts)
     _tell_verdicts(out, verdicts)

@@ -35,12 +35,17 @@ class ShowtellGroup(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; a `ShowtellError` becomes one line on stderr and exit code 2, Ctrl-C exit code 130."""
+        from executor.quiet import load_physics
+
         try:
+            load_physics()
             return super().invoke(ctx)
         except (ShowtellError, OSError) as error:
             if isinstance(error, BrokenPipeError):
                 raise
             typer.echo(f"showtell: error: {one_line(error)}", err=True)
+            if "--json" in sys.argv[1:]:
+                typer.echo(json.dumps({"error": one_line(error)}))
             raise typer.Exit(BAD_INPUT) from error
         except KeyboardInterrupt as error:
             typer.echo("showtell: interrupted", err=True)
@@ -100,7 +105,8 @@ class Output:
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
         columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-        with Progress(*columns, console=self.console(err=True), transient=True) as bar:
+        console = self.console(err=True)
+        with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
             task = bar.add_task(description, total=total)
             yield lambda: bar.advance(task)
 
