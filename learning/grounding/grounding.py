@@ -20,10 +20,12 @@ class Grounding:
     def __init__(self) -> None:
         """Start empty."""
         self.counts: defaultdict[str, defaultdict[Concept | None, float]] = defaultdict(lambda: defaultdict(float))
+        self.concept_totals: defaultdict[Concept | None, float] = defaultdict(float)
 
     def add(self, ngram: str, concept: Concept | None, amount: float = 1.0) -> None:
         """Add `amount` to λ(δ, v)."""
         self.counts[ngram][concept] += amount
+        self.concept_totals[concept] += amount
 
     def total(self, ngram: str) -> float:
         """λ(δ): how much the n-gram was validated with anything."""
@@ -49,6 +51,7 @@ class Grounding:
         for row in self.counts.values():
             if old in row:
                 row[new] += row.pop(old)
+        self.concept_totals[new] += self.concept_totals.pop(old, 0.0)
 
     def to_json(self) -> dict[str, dict[str, float]]:
         """N-gram to concept (or `none`) to count; counts below 0.05 are left out."""

@@ -76,7 +76,11 @@ class LanguageLearner:
         self.focus.observe(ngrams, focal_concepts(percept, shown))
         candidates = self.hypotheses(list(ngrams), salient)
         entries, skip = lexical_entries(
-            words, self.grounding, self.preferences, candidates, {w: max(self.correlation.strongest(w), self.focus.strongest(w)) for w in set(words)}
+            words,
+            self.grounding,
+            self.preferences,
+            candidates,
+            {w: max(self.correlation.strongest(w), self.focus.strongest(w)) for w in set(words)},
         )
         chart = Chart(len(words), entries, skip, self.grammar, scene, actions, self.preferences)
         omega = VisionTree.of(shown)
@@ -95,11 +99,7 @@ class LanguageLearner:
 
     def hypotheses(self, ngrams: list[str], salient: set[Concept]) -> dict[Pair, float]:
         """Select (4.2) and filter (4.3 to 4.6) grounding hypotheses for the n-grams and concepts at hand."""
-        strengths = {
-            (ngram, concept): self.strength(ngram, concept)
-            for ngram in ngrams
-            for concept in salient
-        }
+        strengths = {(ngram, concept): self.strength(ngram, concept) for ngram in ngrams for concept in salient}
         strengths = {pair: k if k >= LEAST_STRENGTH else 0.0 for pair, k in strengths.items()}
         chosen = select_groundings(strengths)
         # The program takes the strongest pairs up to its bound, so of "red" and "the red", equally strong, it may have

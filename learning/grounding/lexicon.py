@@ -20,6 +20,13 @@ LEAST_PROBABILITY = 0.02
 """Meanings rarer than this are not tried any more."""
 LEAST_COUNT = 0.2
 """Validations that a meaning needs before it is tried without a fresh correlation."""
+DOUBT = 3.0
+"""Power of 1 - K in the prior of meaning nothing: a word that goes with some concept half the time is no function word."""
+SAID = 0.3
+"""Weight of the other direction, P(δ | v) (equation 5.2), beside P(v | δ). A word that is not needed to single a thing out
+("cube" among cubes) would slowly turn into a function word by Φ alone; but of all that is passed over it is a rare one."""
+SMOOTH = 2.0
+"""Sightings added to the total of a concept, so that the first n-gram it is validated with does not own it."""
 REFERENCE_PRIOR = 0.05
 """Correlation lent to every single word as a name for the thing spoken of before."""
 
@@ -56,7 +63,9 @@ def lexical_entries(
         known = grounding.counts.get(ngram, {})
         total = grounding.total(ngram)
         weight = PRIOR_WEIGHT + PRIOR_SHARE * total if candidates is not None else 0.0
-        nothing = NONE_WEIGHT + weight * max(0.02, 1.0 - max(sum(prior.values()), (meant or {}).get(ngram, 0.0)))
+        nothing = NONE_WEIGHT + weight * max(
+            0.02, (1.0 - min(1.0, max(sum(prior.values()), (meant or {}).get(ngram, 0.0)))) ** DOUBT
+        )
         mass = total + nothing + weight * sum(prior.values())
         meanings: set[Concept] = set(prior)
         meanings.update(c for c, n in known.items() if c is not None and n >= LEAST_COUNT)
@@ -67,7 +76,12 @@ def lexical_entries(
                     _at(spans, concept, math.log(probability) + preferences.of(lexical_feature(ngram, concept)))
                 )
         if single:
-            cost = math.log((known.get(None, 0.0) + nothing) / mass) + preferences.of(skip_feature(ngram))
+            said = (known.get(None, 0.0) + nothing) / (grounding.concept_totals[None] + nothing + SMOOTH)
+            cost = (
+                math.log((known.get(None, 0.0) + nothing) / mass)
+                + SAID * math.log(said)
+                + preferences.of(skip_feature(ngram))
+            )
             for first, _ in spans:
                 skip[first] = cost
     return entries, skip
