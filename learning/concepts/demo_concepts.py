@@ -2,9 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]
 
 from learning.concepts.demo_mixture import fit_mixture
 from learning.concepts.feature_space import FEATURE_SPACES, NEAR
@@ -48,12 +50,19 @@ def fit_demo(observation: Observation, rng: np.random.Generator) -> DemoConcepts
     """
     values = feature_values(observation, rng)
     components = {}
-    for name, (points, tracks) in values.items():
-        if len(points) > MOST_POINTS:
-            chosen = np.sort(rng.choice(len(points), MOST_POINTS, replace=False))
-            points, tracks = points[chosen], tracks[chosen]
-        components[name] = fit_mixture(points, tracks, FEATURE_SPACES[name])
+    with _threadpools().limit(limits=1):  # threads cost five times what these small matrices take
+        for name, (points, tracks) in values.items():
+            if len(points) > MOST_POINTS:
+                chosen = np.sort(rng.choice(len(points), MOST_POINTS, replace=False))
+                points, tracks = points[chosen], tracks[chosen]
+            components[name] = fit_mixture(points, tracks, FEATURE_SPACES[name])
     return DemoConcepts(components)
+
+
+@cache
+def _threadpools() -> ThreadpoolController:
+    """The thread pools of the linear algebra libraries, looked up once."""
+    return ThreadpoolController()
 
 
 def feature_values(observation: Observation, rng: np.random.Generator) -> dict[str, Values]:

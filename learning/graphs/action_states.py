@@ -1,5 +1,7 @@
 """From the tracks of one demo to its action graphlet (thesis 3.3.4)."""
 
+from collections.abc import Iterable, Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,13 +34,29 @@ def action_of(observation: Observation, spaces: ConceptSpaces) -> ActionGraphlet
     location = lasting(_location_variable(observation, moved), SHORTEST_STATE)
     rows = np.stack([closed, touching, location], axis=1).astype(np.int64)
     rows = without_short_rows(rows, SHORTEST_STATE)
-    return ActionGraphlet.of(GraphletState(bool(row[0]), bool(row[1]), int(row[2])) for row in rows)
+    return ActionGraphlet.of(_one_change_at_a_time(GraphletState(bool(c), bool(t), int(at)) for c, t, at in rows))
 
 
 def touches(observation: Observation, spaces: ConceptSpaces) -> NDArray[np.bool_]:
     """Whether the gripper is at each object, per frame, (F, N): their distance concept is the *at it* one."""
     offset = observation.location - observation.gripper_location[:, None]
     return np.asarray(spaces.predicates("distance", smoothed(offset)) == spaces.touching)
+
+
+def _one_change_at_a_time(states: Iterable[GraphletState]) -> Iterator[GraphletState]:
+    """Put in the state that was too short to be seen when the gripper closes as it arrives, or leaves as it opens.
+
+    A gripper that grasps is there before it closes, and one that lets go opens before it leaves: in between it is open
+    and touching, however briefly.
+    """
+    before: GraphletState | None = None
+    for state in states:
+        if before is not None and before.gripper_closed != state.gripper_closed and before.touching != state.touching:
+            grasping = state if state.gripper_closed else before
+            if grasping.touching:
+                yield GraphletState(False, True, grasping.object_location)
+        yield state
+        before = state
 
 
 def _location_variable(observation: Observation, moved: int) -> NDArray[np.int64]:

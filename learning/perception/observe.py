@@ -81,8 +81,8 @@ def observe_demo(demo: "Demo", rng: np.random.Generator, noise: BoardNoise = BOA
     """
     states = demo.states
     times = np.asarray(demo.times, dtype=np.float64)
-    picked = np.searchsorted(times, np.arange(times[0], times[-1] + 1e-9, FRAME_TIME))
-    picked = np.unique(np.append(picked, len(times) - 1))
+    picked = np.searchsorted(times, np.arange(times[0], times[-1], FRAME_TIME))
+    picked = np.unique(np.append(picked, len(times) - 1))  # the last state says how the demo ended
     by_id = {thing.id: thing for thing in demo.scene.objects}
     tracks = TrueTracks(
         times=times[picked],
