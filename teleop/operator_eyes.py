@@ -13,6 +13,8 @@ NOISE = 0.001
 """Standard deviation of one look, per axis [m]."""
 TRUST = 0.18
 """How far one look at the tool corrects the inner sense of it: at 60 Hz, about 0.1 s until a surprise is taken in."""
+SETTLING = 0.3
+"""How much one look counts in where the tool was last seen."""
 STILL_TRUST = 0.08
 """The same for a block at rest, which can be looked at for longer."""
 SURPRISE = 0.05
@@ -28,7 +30,7 @@ class Eyes:
     Attributes:
         tool: Where the tool is thought to be now, (3,) [m].
         opening: Gap between the fingers as seen [m].
-        surprise: How far the tool was last seen from where it was thought to be, smoothed, (3,) [m].
+        seen_tool: Where the tool was seen over the last few looks: late, (3,) [m].
         time: Simulated time of the last look [s].
     """
 
@@ -43,7 +45,7 @@ class Eyes:
         self._thought: deque[tuple[float, FloatArray]] = deque()
         self.tool = np.zeros(3)
         self.opening = 0.0
-        self.surprise = np.zeros(3)
+        self.seen_tool = np.zeros(3)
         self.time = 0.0
         self._watched: int | None = None
         self._block: FloatArray | None = None
@@ -73,14 +75,14 @@ class Eyes:
         self.opening = view.gripper_opening
         seen_tool = view.pose_tool_in_world.position + noise[0]
         if first:
-            self.tool = seen_tool
+            self.tool = self.seen_tool = seen_tool
         else:
             while len(self._thought) > 1 and self._thought[1][0] <= view.time:
                 self._thought.popleft()
             wrong = seen_tool - self._thought[0][1]
             self.tool = self.tool + TRUST * wrong
+            self.seen_tool = self.seen_tool + SETTLING * (seen_tool - self.seen_tool)
             self._thought = deque((when, where + TRUST * wrong) for when, where in self._thought)
-            self.surprise = self.surprise + 0.3 * (wrong - self.surprise)
         self._thought.append((state.time, self.tool))
         self._look_at_block(noise[1])
 

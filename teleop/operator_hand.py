@@ -13,6 +13,8 @@ SMOOTHING = 0.06
 """Time constant of a thumb's motion [s]."""
 CLUMSINESS = 0.06
 """Standard deviation of a held deflection, relative to it; it wanders slowly."""
+ARM_LAG = 0.035
+"""How far the arm is known to follow behind the stick [s]."""
 WANDER = 0.25
 """Time in which the wandering forgets [s]."""
 TREMOR = 0.004
@@ -23,7 +25,7 @@ class Hand:
     """Turns wished tool velocities into a gamepad state.
 
     Attributes:
-        expected: The tool velocity that the hand believes it asked for, (3,) [m/s].
+        expected: The tool velocity that a practised hand expects of what it has done, (3,) [m/s].
     """
 
     def __init__(self, mapping: GamepadMapping, rng: np.random.Generator) -> None:
@@ -54,7 +56,7 @@ class Hand:
             # A thumb that does not push lies still.
             size = size * (1.0 + wander) + TREMOR * draws[1][axis] if abs(smooth) > 5e-4 else 0.0
             deflections.append(min(max(size, -1.0), 1.0))
-        self.expected = np.array(self._smooth)
+        self.expected = self.expected + (1.0 - math.exp(-dt / ARM_LAG)) * (np.array(self._smooth) - self.expected)
         x, y, z = deflections
         reach = math.hypot(x, y)
         if reach > 1.0:  # the stick's gate is round

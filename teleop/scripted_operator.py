@@ -33,12 +33,20 @@ ALIGNED_FOR = 0.08
 """How long it wants to see itself aligned [s]."""
 NEAR = 0.0018
 """Height error at which a height is reached [m]."""
+NEAR_FOR = 0.08
+"""How long it wants to see a height reached before it closes or opens the gripper [s]."""
 RISE_SLACK = 0.008
 """It starts to move sideways this far below the height it rises to [m]."""
 TAP = 0.10
 """How long a button is pressed [s]."""
 GRIPPER_TIME = 0.32
 """It waits this long after a tap for the fingers, and for its own eyes [s]."""
+CAREFUL_BELOW = 0.04
+"""From this far above a block or its place it goes down carefully [m] ..."""
+SLOWLY = 0.5
+"""... at no more than this share of top speed."""
+ABOVE_MIDDLE = 0.0015
+"""It grasps a block a little above its middle, to keep clear of the one below [m]."""
 STRAIGHT_UP = 0.012
 """A goal this close to straight above or below needs no detour over the towers [m]."""
 PATIENCE = 6.0
@@ -51,8 +59,10 @@ HELD_WITHIN = 0.012
 """A block whose centre is this close to the tool is in the gripper [m]."""
 PLACED_WITHIN = 0.012
 """A block this close to its goal is left alone [m]."""
-TOUCHED = 0.004
-"""Pushing down this far without moving means that something is in the way [m]."""
+STUCK_FOR = 0.6
+"""If it goes down and sees no progress for this long, it has arrived or something is in the way [s]."""
+SUNK = 0.001
+"""What counts as progress, through its noisy eyes [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +192,7 @@ class ScriptedOperator:
         here = eyes.block().copy()
         yield from self._over(eyes.block, self._tool, carry_height(eyes.view, eyes.tool, here, None))
         hover = carry_height(eyes.view, here, here, None)
-        yield from self._down(eyes.block, self._tool, hover, lambda: float(eyes.block()[2]))
+        yield from self._down(eyes.block, self._tool, hover, lambda: float(eyes.block()[2]) + ABOVE_MIDDLE)
         yield from self._tap(close=True)
         yield from self._vertical(float(eyes.tool[2]) + (LIFT if self.task.goal is None else CHECK_LIFT))
         yield from self._wait(0.1)
@@ -246,6 +256,8 @@ class ScriptedOperator:
         eyes = self._eyes
         give_up = eyes.time + PATIENCE
         aligned_since = math.inf
+        near_since = math.inf
+        lowest, sunk_at = math.inf, math.inf
         going_down = False
         while eyes.time < give_up:
             here = body()
@@ -260,11 +272,13 @@ class ScriptedOperator:
                 going_down = eyes.time - aligned_since >= ALIGNED_FOR
                 rest = np.array([hover - eyes.tool[2]])
                 down = self._towards(rest, 1.0) if rest[0] < 0.0 else _STILL[:1]
-            elif remaining < NEAR or (remaining < 0.015 and eyes.surprise[2] > TOUCHED):
+            elif eyes.time - near_since >= NEAR_FOR or eyes.time - sunk_at > STUCK_FOR:
                 return
             else:
-                # Finer near the end: the last two centimetres take as long as the ten before.
-                down = self._towards(np.array([-remaining]), 1.0)
+                if eyes.seen_tool[2] < lowest - SUNK:
+                    lowest, sunk_at = float(eyes.seen_tool[2]), eyes.time
+                near_since = min(near_since, eyes.time) if abs(remaining) < NEAR else math.inf
+                down = self._towards(np.array([-remaining]), SLOWLY if remaining < CAREFUL_BELOW else 1.0)
                 if astray > ASTRAY:
                     down = down * 0.1
             yield Wish(np.append(self._towards(sideways, 0.4), down))

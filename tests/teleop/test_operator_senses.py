@@ -39,13 +39,16 @@ def test_knowing_ones_own_motion_bridges_the_lag() -> None:
     assert abs(eyes.tool[0] - velocity[0] * 59 * FRAME) < 0.0015
 
 
-def test_what_was_not_expected_shows_as_surprise() -> None:
+def test_what_is_seen_corrects_what_was_expected() -> None:
     eyes = Eyes(np.random.default_rng(0))
-    for frame in range(60):
-        if frame:
+    for frame in range(90):
+        if 0 < frame < 30:
             eyes.moved(np.array([0.0, 0.0, -0.05 * FRAME]))
         eyes.look(state_at(frame * FRAME, np.zeros(3)))  # blocked: the tool stands still
-    assert eyes.surprise[2] > 0.003
+        if frame == 29:
+            assert eyes.tool[2] < -0.003
+        assert abs(eyes.seen_tool[2]) < 0.005  # five standard deviations of a look
+    assert abs(eyes.tool[2]) < 0.0015
 
 
 def test_thumbs_are_smooth_imprecise_and_lie_still_at_rest() -> None:
