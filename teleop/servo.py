@@ -137,7 +137,7 @@ class Servo:
             wanted, damped = damped_inverse(jacobian[self._rows], asked[self._rows])
             reason = ServoReason.SINGULARITY if damped else ServoReason.NONE
             wanted, reason, detail = self._limit(wanted, positions, reason)
-        velocity, acceleration, braked = self._advance(wanted, positions, dt)
+        velocity, acceleration, braked = self._advance(self.state, wanted, positions, dt)
         if braked is not None and reason is not ServoReason.BAD_INPUT:
             reason, detail = ServoReason.POSITION_LIMIT, self.robot.joint_names[braked]
         self.state = ServoState(velocity, acceleration)
@@ -186,11 +186,9 @@ class Servo:
         return wanted, reason, detail
 
     def _advance(
-        self, wanted: list[float], positions: list[float], dt: float
+        self, state: ServoState, wanted: list[float], positions: list[float], dt: float
     ) -> tuple[tuple[float, ...], tuple[float, ...], int | None]:
         """Next velocity and acceleration, and the joint that had to brake for its position limit, if one had to."""
-        assert self.state is not None
-        state = self.state
         velocity, acceleration = self._profile.after(state.velocity, state.acceleration, wanted, dt)
         if not any(velocity) and not any(acceleration):
             return velocity, acceleration, None

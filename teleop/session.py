@@ -3,7 +3,7 @@
 from twin.state import JointCommand
 from twin.world import World
 
-from .gamepad import GamepadState
+from .gamepad import RESTING, GamepadState
 from .gamepad_mapping import GamepadMapping
 from .servo import Servo, ServoResult
 
@@ -29,12 +29,16 @@ class Session:
         self.mapping = mapping or GamepadMapping()
         self.servo = Servo(world.robot)
         spec = world.spec
+        self._gamepad = RESTING
+        self._command = self.mapping.command(RESTING)
         self._open = world.robot.gripper.max_opening
         self.opening = 0.0 if spec.gripper_closed or spec.held is not None else self._open
 
     def step(self, gamepad: GamepadState) -> ServoResult:
         """Map, limit and execute one control step of `World.DT`."""
-        command = self.mapping.command(gamepad)
+        if gamepad is not self._gamepad:  # a gamepad reports less often than the arm is controlled
+            self._gamepad, self._command = gamepad, self.mapping.command(gamepad)
+        command = self._command
         if command.gripper != "keep":
             self.opening = 0.0 if command.gripper == "close" else self._open
         world = self.world
