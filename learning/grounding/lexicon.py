@@ -21,10 +21,10 @@ LEAST_PROBABILITY = 0.02
 LEAST_COUNT = 0.2
 """Validations that a meaning needs before it is tried without a fresh correlation."""
 DOUBT = 3.0
-"""Power of 1 - K in the prior of meaning nothing: a word that goes with some concept half the time is no function word."""
+"""Power of 1 - K in the prior of meaning nothing: what goes with some concept half the time is no function word."""
 SAID = 0.3
-"""Weight of the other direction, P(δ | v) (equation 5.2), beside P(v | δ). A word that is not needed to single a thing out
-("cube" among cubes) would slowly turn into a function word by Φ alone; but of all that is passed over it is a rare one."""
+"""Weight of the other direction, P(δ | v) (equation 5.2), beside P(v | δ). A word that is not needed to single a thing
+out ("cube" among cubes) would slowly become a function word by Φ alone; but of all function words it is a rare one."""
 SMOOTH = 2.0
 """Sightings added to the total of a concept, so that the first n-gram it is validated with does not own it."""
 REFERENCE_PRIOR = 0.05

@@ -1,4 +1,4 @@
-"""A toy language over hand-made boards, in two word orders: what a language learner should get in a few hundred demos."""
+"""A toy language over hand-made boards, in two word orders, that takes a learner a hundred demos."""
 
 from dataclasses import dataclass
 
