@@ -133,6 +133,10 @@ def in_processes(
             yield index, work(job)
             on_done()
         return
+    for library in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(
+            library, "1"
+        )  # inherited: a process a core is enough, each with threads would be too many
     with ProcessPoolExecutor(processes, get_context("spawn"), initializer=_start_worker) as pool:
         waiting = {pool.submit(work, job): index for index, job in enumerate(jobs)}
         try:

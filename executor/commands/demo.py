@@ -17,7 +17,7 @@ COMMANDS = 12
 VARIETY = 0.1
 ENOUGH = 0.9
 """Share of commands that must go right for exit code 0."""
-VIEW_SIZE = (400, 300)
+VIEW_SIZE = (560, 420)
 """Width and height of a view [pixels]."""
 FILM_SPEED = 2.0
 """How many times faster than it happened the film plays."""
