@@ -143,6 +143,7 @@ class Chart:
         for cost in skip:
             self._skipped.append(self._skipped[-1] + cost)
         self._cells: dict[tuple[int, int], Cell] = {}
+        self._orders: dict[tuple[str, tuple[str, ...]], bool] = {}
         self._weights: dict[tuple[str, tuple[str, ...]], float] = {}
         lexical: dict[tuple[int, int], list[Item]] = {}
         for entry in entries:
@@ -220,7 +221,14 @@ class Chart:
 
     def _allowed(self, label: str, parts: tuple[str, ...], usual: bool) -> bool:
         """Whether to try an order of children: the usual ones, those seen, and all until the element has settled."""
-        return usual or self.grammar.total(label) < SETTLED or self.grammar.seen_start(label, parts)
+        if usual:
+            return True
+        key = (label, parts)
+        allowed = self._orders.get(key)
+        if allowed is None:
+            settled = self.grammar.total(label) >= SETTLED
+            allowed = self._orders[key] = not settled or self.grammar.seen_start(label, parts)
+        return allowed
 
     def _join(self, found: Found, left: Cell, right: Cell, gap: float) -> None:
         """Make every element that an element of the left cell and one of the right cell make up."""
