@@ -108,18 +108,22 @@ class CorrelationMatrix:
             self.joint_counts.pop(ngram, None)
 
     def to_json(self) -> dict[str, Any]:
-        """Counts of concepts, and for each n-gram its count, when it was first heard or frozen, and its row."""
+        """Counts of concepts, and for each n-gram its count, when it was first heard or frozen, and its row.
+
+        Of n-grams that were heard once only single words are saved: the others are chance combinations, mostly.
+        """
         return {
-            "sentences": self.demos,
-            "concepts": {str(c): n for c, n in sorted(self.concept_counts.items())},
+            "sentences": int(self.demos),
+            "concepts": {str(c): int(n) for c, n in sorted(self.concept_counts.items())},
             "ngrams": {
                 ngram: [
-                    count,
-                    self._first_heard[ngram],
-                    self.frozen_at.get(ngram),
-                    {str(c): n for c, n in sorted(self.joint_counts[ngram].items())},
+                    int(count),
+                    int(self._first_heard[ngram]),
+                    int(self.frozen_at[ngram]) if ngram in self.frozen_at else None,
+                    {str(c): int(n) for c, n in sorted(self.joint_counts[ngram].items())},
                 ]
                 for ngram, count in sorted(self.ngram_counts.items())
+                if count >= 2 or " " not in ngram
             },
         }
 

@@ -10,6 +10,8 @@ import numpy as np
 from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, RELATION_SPACES, Concept
 from learning.percept import NO_CONCEPT, Percept, ShownAction
 
+LOOKS = ("colour", "shape")
+"""Properties of an object itself, wherever it is."""
 NEARLY = 1.15
 """Neighbours up to this many times the distance of the nearest count as nearest too."""
 
@@ -41,7 +43,7 @@ def focal_concepts(percept: Percept, shown: ShownAction) -> set[Concept]:
     chance by `salient_concepts`, but it is not nearly always in focus.
     """
     focal = {Concept(ACTION_SPACE, shown.action)}
-    for space in OBJECT_SPACES:
+    for space in LOOKS:
         number = int(percept.properties[space][shown.moved])
         if number != NO_CONCEPT:
             focal.add(Concept(space, number))
