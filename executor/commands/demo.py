@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from executor.showcase import Lessons
     from executor.trial import Verdict
 
-DEMOS = 200
+DEMOS = 220
 COMMANDS = 12
-VARIETY = 0.1
+VARIETY = 0.25
 ENOUGH = 0.9
 """Share of commands that must go right for exit code 0."""
 VIEW_SIZE = (560, 420)

@@ -1,5 +1,7 @@
 """Sentences carried out and refused in small scenes of our own."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -91,8 +93,7 @@ def test_what_cannot_be_done_is_explained(knowledge: Knowledge, scene: SceneSpec
     report, state = say(knowledge, scene, sentence)
     assert not report.success and report.refused
     assert state.time == 0.0  # nothing moved
-    with pytest.raises(AssertionError, match=why):
-        raise AssertionError(report.explanation)
+    assert re.search(why, report.explanation)
 
 
 def test_no_word_at_all_is_bad_input(knowledge: Knowledge) -> None:
