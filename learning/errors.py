@@ -16,4 +16,4 @@ class KnowledgeError(LearningError, ValueError):
 
 
 class PerceptionError(LearningError, ValueError):
-    """What a demo or world shows cannot be perceived: nothing moved, or a colour or shape without a known look."""
+    """What a demo or world shows cannot be perceived: nothing moved, or no concept was learned yet."""

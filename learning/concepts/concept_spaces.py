@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from learning.concepts.demo_concepts import DemoConcepts
 from learning.concepts.feature_space import FEATURE_SPACES
 from learning.concepts.incremental_mixture import IncrementalMixture
-from learning.errors import KnowledgeError
+from learning.errors import KnowledgeError, PerceptionError
 from learning.graphs.action_library import ActionLibrary
 from robots.pose import FloatArray
 
@@ -30,8 +30,14 @@ class ConceptSpaces:
 
     @property
     def touching(self) -> int:
-        """Number of the *at it* concept: the distance concept with the smallest mean."""
+        """Number of the *at it* concept: the distance concept with the smallest mean.
+
+        Raises:
+            PerceptionError: No distance was seen yet.
+        """
         components = self.mixtures["distance"].components
+        if not components:
+            raise PerceptionError("nothing is known of feature space 'distance' yet: learn from a demo first")
         return min(components, key=lambda number: float(components[number].mean[0]))
 
     def update(self, demo: DemoConcepts) -> None:

@@ -14,6 +14,7 @@ from learning.concepts.equality_tests import (
 )
 from learning.concepts.feature_space import FeatureSpace
 from learning.concepts.gaussian import Gaussian, merged, squared_mahalanobis, stacked
+from learning.errors import PerceptionError
 from robots.pose import FloatArray
 
 SIGNIFICANCE = 0.001
@@ -39,7 +40,7 @@ class IncrementalMixture:
         self._aliases: dict[int, int] = {}
         self._next_number = 0
         self._demos = 0
-        self._prepared: tuple[NDArray[np.int64], FloatArray, FloatArray] | None = None
+        self._prepared: tuple[NDArray[np.int64], FloatArray, FloatArray, FloatArray] | None = None
 
     @property
     def components(self) -> Mapping[int, Gaussian]:
@@ -105,26 +106,31 @@ class IncrementalMixture:
         return [renamed.get(number, number) for number in numbers]
 
     def classify(self, values: FloatArray) -> NDArray[np.int64]:
-        """Concept number with the smallest Mahalanobis distance (eq. 3.1) to each embedded value, (..., d) to (...).
+        """Concept number of the most likely concept (eq. 3.1, weighted) for each embedded value, (..., d) to (...).
 
         Raises:
-            ValueError: There is no concept yet.
+            PerceptionError: There is no concept yet.
         """
         return self.classify_with_distance(values)[0]
 
     def classify_with_distance(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
         """Like `classify`, with the Mahalanobis distance to that concept, both (...)."""
         if not self._components:
-            raise ValueError(f"feature space {self.space.name} has no concept yet: update it with a demo first")
+            raise PerceptionError(f"nothing is known of feature space '{self.space.name}' yet: learn from a demo first")
         if self._prepared is None:
             components = self.components
             means, covariances = stacked(list(components.values()), self.space.dimension)
             precisions = np.asarray(np.linalg.inv(covariances), dtype=np.float64)
-            self._prepared = np.array(list(components), dtype=np.int64), means, precisions
-        numbers, means, precisions = self._prepared
+            _, log_determinants = np.linalg.slogdet(covariances)
+            counts = np.array([component.count for component in components.values()])
+            # By 3.1 alone the widest component wins far from all means, be it an outlier of two demos that mixed red
+            # with yellow: the rest of the Gaussian's log likelihood, and how often each was seen, count as well.
+            handicap = log_determinants - 2.0 * np.log(counts / counts.sum())
+            self._prepared = np.array(list(components), dtype=np.int64), means, precisions, handicap
+        numbers, means, precisions, handicap = self._prepared
         flat = np.asarray(values, dtype=np.float64).reshape(-1, self.space.dimension)
         squared = squared_mahalanobis(flat, means, precisions)
-        nearest = np.argmin(squared, axis=1)
+        nearest = np.argmin(squared + handicap, axis=1)
         shape = np.asarray(values).shape[:-1]
         distance = np.sqrt(np.maximum(np.take_along_axis(squared, nearest[:, None], axis=1)[:, 0], 0.0))
         return numbers[nearest].reshape(shape), distance.reshape(shape)
@@ -169,6 +175,11 @@ class IncrementalMixture:
         mixture._aliases = {int(number): int(kept) for number, kept in data["aliases"].items()}
         mixture._next_number = int(data["next"])
         mixture._demos = int(data["demos"])
+        known = {*mixture._components, *mixture._aliases}
+        if known != set(range(mixture._next_number)) or len(known) < len(mixture._components) + len(mixture._aliases):
+            raise ValueError(
+                f"numbers of {space.name} must be 0..{mixture._next_number - 1}, each a concept or an alias"
+            )
         if any(kept >= number for number, kept in mixture._aliases.items()):
             raise ValueError(f"aliases of {space.name} must point to smaller numbers")
         return mixture

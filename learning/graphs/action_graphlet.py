@@ -61,11 +61,7 @@ class ActionGraphlet:
         return "".join(f"[{state}]" for state in self.states)
 
     def contains(self, other: "ActionGraphlet") -> bool:
-        """Whether `other` is a contiguous part of this action, up to the names of its location variables.
-
-        A run of states at one grip may be entered or left in its middle: taking contains the part of it that starts
-        with the gripper closed.
-        """
+        """Whether `other` is a contiguous part of this action, up to the names of its location variables."""
         length = len(other.states)
         return any(
             _numbered(self.states[start : start + length]) == other.states

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.errors import PerceptionError
 from learning.perception.descriptors import board_descriptors
 from learning.perception.observation import Observation
 from robots.pose import FloatArray
@@ -64,12 +63,9 @@ def observed(
         objects: The N objects in the order of the tracks.
         rng: Source of the noise.
         noise: Its standard deviations.
-
-    Raises:
-        PerceptionError: An object has a colour or shape whose look is not known.
     """
     frames, number = tracks.location.shape[:2]
-    looks = np.array([hsl(colour_rgb(thing.colour)) for thing in objects]).reshape(number, 3)
+    looks = np.array([hsl(COLOURS_RGB[thing.colour]) for thing in objects]).reshape(number, 3)
     colour = looks + rng.normal(0.0, noise.lighting, 3) + rng.normal(0.0, noise.colour, (frames, number, 3))
     colour[..., 0] %= 1.0
     np.clip(colour[..., 1:], 0.0, 1.0, out=colour[..., 1:])
@@ -85,13 +81,6 @@ def observed(
         colour=colour,
         shape=shape,
     )
-
-
-def colour_rgb(colour: str) -> tuple[float, float, float]:
-    """Surface colour, red green blue in 0..1; raises PerceptionError for a colour that the board does not have."""
-    if colour not in COLOURS_RGB:
-        raise PerceptionError(f"unknown colour '{colour}'; the board has {', '.join(COLOURS_RGB)}")
-    return COLOURS_RGB[colour]
 
 
 def hsl(rgb: tuple[float, float, float]) -> tuple[float, float, float]:

@@ -52,7 +52,7 @@ def observe_key_frames(
         noise: Its standard deviations.
 
     Raises:
-        PerceptionError: There are no key frames, or a colour or shape has no known look.
+        PerceptionError: There are no key frames.
     """
     if not frames:
         raise PerceptionError("there are no key frames to observe; give at least one")
@@ -75,9 +75,6 @@ def observe_demo(demo: "Demo", rng: np.random.Generator, noise: BoardNoise = BOA
         demo: The recording; its true poses are read, as the board is fully observed (design section 5).
         rng: Source of the noise.
         noise: Its standard deviations.
-
-    Raises:
-        PerceptionError: A colour or shape has no known look.
     """
     states = demo.states
     times = np.asarray(demo.times, dtype=np.float64)
@@ -103,9 +100,6 @@ def observe_world(
         spec: Its scene, for the objects' looks.
         rng: Source of the noise.
         noise: Its standard deviations.
-
-    Raises:
-        PerceptionError: A colour or shape has no known look.
     """
     by_id = {thing.id: thing for thing in spec.objects}
     location = np.array([thing.pose_object_in_world.position for thing in state.objects]).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""Small board demos for the tests of perception, concepts and graphs: random stacks, and what is done with one block."""
+"""Small board demos for tests: random stacks, and what is done with one block."""
 
 from dataclasses import dataclass
 

@@ -122,7 +122,9 @@ def test_numbers_keep_their_meaning_and_json_gives_the_same_back(seed: int) -> N
     mixture = IncrementalMixture(Location)
     for _ in range(12):
         found = [
-            Gaussian(rng.integers(0, 4, 2) * 0.05 + rng.normal(0, 0.006, 2), 8e-5 * np.eye(2), float(rng.integers(1, 20)))
+            Gaussian(
+                rng.integers(0, 4, 2) * 0.05 + rng.normal(0, 0.006, 2), 8e-5 * np.eye(2), float(rng.integers(1, 20))
+            )
             for _ in range(int(rng.integers(1, 5)))
         ]
         given_before = mixture.numbers_given
