@@ -60,7 +60,7 @@ def lexical_entries(
         prior = by_ngram.get(ngram, {})
         if candidates is not None and single:
             prior = {REFERENCE: REFERENCE_PRIOR, **prior}
-        known = grounding.counts.get(ngram, {})
+        known: Mapping[Concept | None, float] = grounding.counts.get(ngram, {})
         total = grounding.total(ngram)
         weight = PRIOR_WEIGHT + PRIOR_SHARE * total if candidates is not None else 0.0
         nothing = NONE_WEIGHT + weight * max(
