@@ -33,9 +33,9 @@ would stay asleep, in mid-air, when it is let go."""
 
 _TABLE_RGB = (0.62, 0.56, 0.50)
 _SQUARES_RGB = ((0.93, 0.92, 0.88), (0.36, 0.40, 0.46))
-_EYE = (-0.25, -0.50, 1.30)
-_LOOKS_AT = (0.13, 0.18, 0.36)
-_FIELD_OF_VIEW = 50.0
+_EYE = (-0.30, -0.44, 1.06)
+_LOOKS_AT = (0.12, 0.20, 0.30)
+_FIELD_OF_VIEW = 52.0
 
 
 _numbers = itertools.count()
