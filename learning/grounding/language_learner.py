@@ -110,7 +110,7 @@ class LanguageLearner:
             for part in parts_of(ngram)
             if strengths.get((part, concept), 0.0) >= COMPARABLE * strengths[ngram, concept]
         }
-        return {pair: strengths[pair] for pair in filter_hypotheses(chosen)}
+        return {pair: strengths[pair] for pair in sorted(filter_hypotheses(chosen))}
 
     def log_weight(self, reading: Reading) -> float:
         """Log probability of a reading, not normalised, with the preference for readings that leave little open."""

@@ -69,7 +69,7 @@ def lexical_entries(
         mass = total + nothing + weight * sum(prior.values())
         meanings: set[Concept] = set(prior)
         meanings.update(c for c, n in known.items() if c is not None and n >= LEAST_COUNT)
-        for concept in meanings:
+        for concept in sorted(meanings):
             probability = (known.get(concept, 0.0) + weight * prior.get(concept, 0.0)) / mass
             if probability >= LEAST_PROBABILITY or concept in prior:
                 entries.extend(
