@@ -140,7 +140,7 @@ def import_release(
     for command in release.commands:
         commands.setdefault(command.scene, []).append(command)
     for scene, move in scenes:
-        path = folder / f"scene_{scene.number:04d}.mcap"
+        path = demo_path(folder, scene.number)
         kept = _kept(scene.number, path)
         if kept is not None:
             outcomes[scene.number] = kept
@@ -155,6 +155,11 @@ def import_release(
             advance(outcome)
     ordered = tuple(outcomes[number] for number in sorted(outcomes))
     return ImportReport(ordered, time.perf_counter() - started, jobs)
+
+
+def demo_path(folder: str | Path, scene: int) -> Path:
+    """Where the demo of a scene lies in an import's folder."""
+    return Path(folder) / f"scene_{scene:04d}.mcap"
 
 
 def _chosen(release: Release, only: Iterable[int] | None) -> list[tuple[Scene, ShownMove]]:

@@ -27,6 +27,9 @@ def train_robots(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the demos.")],
     only: Annotated[list[int] | None, typer.Option(help="A scene to drive (repeat for more); all by default.")] = None,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")] = 0,
+    compare: Annotated[
+        int, typer.Option(min=0, help="How many demos to hold against the key frames of their layouts afterwards.")
+    ] = 50,
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
@@ -34,6 +37,9 @@ def train_robots(
 
     Example: showtell import train-robots train-robots/ -o demos/ --only 1 --only 2
     """
+    import numpy as np
+
+    from executor.compare_graphlets import compare_graphlets
     from executor.import_release import import_release
 
     out = Output(as_json)
@@ -47,11 +53,20 @@ def train_robots(
         out.table(title, ("scene", "reason"), failures[:LISTED])
     out.say(f"{report.right} of {total} scenes ended in the given after-layout; demos are in {output}")
     kept = f", {report.kept} kept from an earlier run" if report.kept else ""
-    speed = f"one demo runs at {report.real_time_factor:.1f} x real time"
-    out.say(f"{report.wall:.0f} s with {report.jobs} processes{kept}; {speed}")
+    speed = f"; one demo runs at {report.real_time_factor:.1f} x real time" if report.kept < total else ""
+    out.say(f"{report.wall:.0f} s with {report.jobs} processes{kept}{speed}")
+    pairs = compare_graphlets(directory, output, compare, np.random.default_rng(seed)) if compare else []
+    same = sum(pair.same for pair in pairs)
+    if pairs:
+        out.say(f"{same} of {len(pairs)} demos show the same action graphlet as the key frames of their layouts")
+    for pair in pairs:
+        if not pair.same:
+            out.say(f"scene {pair.scene}: driven {pair.driven}, implied {pair.implied}")
     out.result(
         {
             "scenes": total,
+            "graphlets_compared": len(pairs),
+            "graphlets_same": same,
             "right": report.right,
             "kept": report.kept,
             "failures": [{"scene": scene, "reason": reason} for scene, reason in failures],

@@ -4,6 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from executor.compare_graphlets import compare_graphlets
 from executor.errors import InputError
 from executor.import_release import import_release
 from learning.errors import ReleaseError
@@ -55,6 +56,12 @@ def test_demos_end_in_the_after_layout(imported: Path, synthetic_release_directo
 def test_imported_demos_replay_exactly(imported: Path) -> None:
     for path in sorted(imported.glob("*.mcap")):
         assert check_replay(path).max_error == 0.0
+
+
+def test_driven_demos_show_the_actions_that_layouts_imply(imported: Path, synthetic_release_directory: Path) -> None:
+    pairs = compare_graphlets(synthetic_release_directory, imported, 50, np.random.default_rng(0))
+    assert len(pairs) == len(list(imported.glob("*.mcap")))
+    assert all(pair.same for pair in pairs), [(p.scene, str(p.driven), str(p.implied)) for p in pairs if not p.same]
 
 
 def test_truth_lies_beside_the_demo(imported: Path, scenes: list[int]) -> None:
