@@ -17,6 +17,8 @@ from executor.quiet import load_physics
 
 VARIETY = 0.25
 """Usual probability of each word being a synonym of the plain one."""
+SENTENCES = 3
+"""Usual number of sentences with a demo."""
 
 PARTIAL = ".partial"
 """Suffix of a demo that is being recorded; it opens like any other when the recording was cut short."""
@@ -54,29 +56,43 @@ def demo_path(folder: Path, collection: str, seed: int, number: int) -> Path:
     return folder / f"{collection}_{seed}_{number:04d}.mcap"
 
 
-def record_board(folder: Path, seed: int, robot: str | None, variety: float, number: int) -> Recorded:
-    """Record one demo of a random task on a random board; the same seed and number give the same demo.
+@dataclass(frozen=True, slots=True)
+class BoardCollection:
+    """What a collection of board demos is made of; the same values give the same demos.
 
-    Args:
-        folder: Where to write it.
-        seed: Seed of the collection.
+    Attributes:
+        folder: Where the demos go; it must be there.
+        seed: Seed of scenes, tasks, sentences and the operator's hand.
         robot: Robot to use instead of the board arm.
         variety: Probability of each word being a synonym of the plain one.
-        number: Number of the demo in the collection.
+        sentences: How many people describe each demo, each in words of their own.
     """
+
+    folder: Path
+    seed: int
+    robot: str | None = None
+    variety: float = VARIETY
+    sentences: int = SENTENCES
+
+
+def record_board(collection: BoardCollection, number: int) -> Recorded:
+    """Record demo `number` of a collection: a random task on a random board."""
     from time import perf_counter
 
+    from executor.paraphrase import told
     from teleop import ScriptedOperator, random_task, record_demo, write_truth
     from twin import World, random_board
 
     begun = perf_counter()  # after the imports, which happen once in a process
+    seed = collection.seed
     rng = np.random.default_rng([seed, number])
-    asked = random_task(random_board(rng, seed=seed), rng, variety=variety)
-    path = demo_path(folder, "board", seed, number)
+    asked = random_task(random_board(rng, seed=seed), rng, variety=collection.variety)
+    utterances = told(asked.sentence, collection.sentences, np.random.default_rng([seed, number, 2]))
+    path = demo_path(collection.folder, "board", seed, number)
     partial_path = path.with_suffix(PARTIAL)
-    with World.from_scene(asked.scene, robot=robot) as world:
+    with World.from_scene(asked.scene, robot=collection.robot) as world:
         operator = ScriptedOperator(asked.task, rng)
-        record_demo(world, operator, partial_path, utterances=(asked.sentence,))
+        record_demo(world, operator, partial_path, utterances=utterances)
         simulated = world.time
     write_truth(path, asked.truth())
     os.replace(partial_path, path)
@@ -84,33 +100,24 @@ def record_board(folder: Path, seed: int, robot: str | None, variety: float, num
 
 
 def record_collection(
-    folder: Path,
-    count: int,
-    seed: int,
-    *,
-    robot: str | None = None,
-    variety: float = VARIETY,
-    jobs: int = 0,
-    on_demo: Callable[[], None] = lambda: None,
+    collection: BoardCollection, count: int, *, jobs: int = 0, on_demo: Callable[[], None] = lambda: None
 ) -> list[Recorded]:
     """Record a board collection; returns the demos in order.
 
     Args:
-        folder: Where to write them; it must be there.
-        count: How many.
-        seed: Seed of scenes, tasks, sentences and the operator's hand.
-        robot: Robot to use instead of the board arm.
-        variety: Probability of each word being a synonym of the plain one.
+        collection: What it is made of.
+        count: How many demos.
         jobs: Processes; 0 takes one a core.
         on_demo: Called after every demo.
 
     Raises:
         InputError: A demo of that name is there already.
     """
-    there = [path for number in range(count) if (path := demo_path(folder, "board", seed, number)).exists()]
+    names = [demo_path(collection.folder, "board", collection.seed, number) for number in range(count)]
+    there = [path for path in names if path.exists()]
     if there:
         raise InputError(f"{there[0]} is there already; choose another folder or another --seed")
-    work = partial(record_board, folder, seed, robot, variety)
+    work = partial(record_board, collection)
     return [done for _, done in sorted(in_processes(work, range(count), jobs, on_demo), key=lambda pair: pair[0])]
 
 

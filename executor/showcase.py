@@ -2,14 +2,14 @@
 
 import shutil
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
-from executor.collection import Recorded, in_processes, record_board
+from executor.collection import BoardCollection, Recorded, in_processes, record_board
 from executor.demo_files import open_demo
 from executor.trial import Trial, Verdict, new_task, run_trial
 from learning import Knowledge, Learner
@@ -56,38 +56,35 @@ class Lessons:
     seconds: float
 
 
-def show_one(folder: Path, seed: int, robot: str | None, variety: float, number: int) -> Shown:
+def show_one(collection: BoardCollection, number: int) -> Shown:
     """Record one demo, read it back from its file, and perceive it."""
-    recorded = record_board(folder, seed, robot, variety, number)
+    recorded = record_board(collection, number)
     demo = open_demo(recorded.path)
-    rng = np.random.default_rng([seed, number, 1])
+    rng = np.random.default_rng([collection.seed, number, 1])
     observation = observe_demo(demo, rng)
     return Shown(recorded, demo.utterances, observation, fit_demo(observation, rng))
 
 
-def show_and_learn(
-    folder: Path, count: int, seed: int, robot: str | None, variety: float, jobs: int, on_demo: Callable[[], None]
-) -> Lessons:
+def show_and_learn(collection: BoardCollection, count: int, jobs: int, on_demo: Callable[[], None]) -> Lessons:
     """Record demos in several processes and learn from them in order, one at a time, as they come.
 
     Args:
-        folder: Where the demos go. Earlier ones are replaced, once all new ones are there.
+        collection: What to record. Earlier demos in its folder are replaced, once all new ones are there.
         count: How many demos.
-        seed: Seed of everything random.
-        robot: Robot to use instead of the board arm.
-        variety: Probability of each word being a synonym of the plain one.
         jobs: Processes; 0 takes one a core.
         on_demo: Called after every demo.
     """
     begun = perf_counter()
+    folder = collection.folder
     fresh = folder.with_name(f"{folder.name}.partial")
     shutil.rmtree(fresh, ignore_errors=True)
     fresh.mkdir(parents=True)
-    learner = Learner(seed=seed)
+    learner = Learner(seed=collection.seed)
     waiting: dict[int, Shown] = {}
     recorded: list[Recorded] = []
     sentences = validated = 0
-    for index, shown in in_processes(partial(show_one, fresh, seed, robot, variety), range(count), jobs, on_demo):
+    work = partial(show_one, replace(collection, folder=fresh))
+    for index, shown in in_processes(work, range(count), jobs, on_demo):
         waiting[index] = shown
         while len(recorded) in waiting:  # in order, so that the same seed learns the same
             each = waiting.pop(len(recorded))

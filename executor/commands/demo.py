@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from executor.showcase import Lessons
     from executor.trial import Verdict
 
-DEMOS = 220
+DEMOS = 150
 COMMANDS = 12
 VARIETY = 0.25
 ENOUGH = 0.9
@@ -39,6 +39,7 @@ def demo(
 
     Example: showtell demo --seed 0
     """
+    from executor.collection import BoardCollection
     from executor.commands.inspect import tell_words
     from executor.files import new_folder
     from executor.showcase import show_and_learn, try_commands
@@ -50,7 +51,8 @@ def demo(
     folder = new_folder(output)
     begun = perf_counter()
     with out.progress("showing, telling and learning", demos) as advance:
-        lessons = show_and_learn(folder / "demos", demos, seed, robot, variety, jobs, advance)
+        collection = BoardCollection(folder / "demos", seed, robot, variety)
+        lessons = show_and_learn(collection, demos, jobs, advance)
     knowledge = folder / "knowledge.json"
     lessons.knowledge.save(knowledge)
     _tell_lessons(out, lessons)

@@ -30,6 +30,7 @@ def record(
     ),
     count: Annotated[int, typer.Option("--count", "-n", min=1, help="How many demos.")] = 1,
     collection: Annotated[Collection, typer.Option(help="Which scenes and tasks.")] = Collection.BOARD,
+    sentences: Annotated[int, typer.Option(min=1, help="At most so many sentences with each demo.")] = 3,
     robot: Annotated[str | None, typer.Option(help="Robot to use instead of the collection's own.")] = None,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")] = 0,
     seed: Seed = 0,
@@ -39,7 +40,7 @@ def record(
 
     Example: showtell record --device scripted --count 20 --collection board -o demos/ --seed 1
     """
-    from executor.collection import record_collection
+    from executor.collection import BoardCollection, record_collection
     from executor.files import new_folder
     from robots import load_robot
 
@@ -49,7 +50,8 @@ def record(
     folder = new_folder(output)
     begun = perf_counter()
     with out.progress("recording", count) as advance:
-        recorded = record_collection(folder, count, seed, robot=robot, jobs=jobs, on_demo=advance)
+        board = BoardCollection(folder, seed, robot, sentences=sentences)
+        recorded = record_collection(board, count, jobs=jobs, on_demo=advance)
     wall = perf_counter() - begun
     simulated = sum(each.simulated for each in recorded)
     single = sum(each.wall for each in recorded)

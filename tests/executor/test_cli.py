@@ -137,7 +137,7 @@ def test_learn_inspect_and_resume(demos: Path, tmp_path: Path) -> None:
     result = run("learn", demos, "-o", path, "--json")
     assert result.exit_code == 0
     said = json.loads(result.stdout)
-    assert said["demos"] == 2 and said["sentences"] == 2 and said["median_seconds_last"] > 0
+    assert said["demos"] == 2 and said["sentences"] >= 2 and said["median_seconds_last"] > 0
     more = json.loads(run("learn", demos, "-o", path, "--resume", path, "--json").stdout)
     assert more["demos_before"] == 2
     shown = json.loads(run("inspect", path, "--json").stdout)
