@@ -12,7 +12,9 @@ from learning.concepts import ConceptSpaces
 from learning.errors import KnowledgeError
 from learning.grammar.actions import ActionTable
 from learning.grounding.language_learner import LanguageLearner
+from learning.knowledge_check import check_language
 from learning.percept import Percept
+from learning.saved_numbers import saved_count
 
 SCHEMA_VERSION = 1
 LEAST_SIGHTINGS = 20
@@ -123,11 +125,15 @@ class Knowledge:
             knowledge.spaces = ConceptSpaces.from_json(data["concepts"])
             field = "language"
             knowledge.language = LanguageLearner.from_json(data["language"])
+            check_language(knowledge.language, knowledge.spaces)
             field = "bearing"
             for number, (bearing, seen) in data["bearing"].items():
-                knowledge.bearing[int(number)], knowledge.seen[int(number)] = float(bearing), float(seen)
+                knowledge.bearing[int(number)] = saved_count(bearing, f"bearing of shape_{number}")
+                knowledge.seen[int(number)] = saved_count(seen, f"sightings of shape_{number}")
             field = "demos"
-            knowledge.demos, knowledge.sentences = int(data["demos"]), int(data["sentences"])
+            knowledge.demos = int(saved_count(data["demos"], "number of demos"))
+            field = "sentences"
+            knowledge.sentences = int(saved_count(data["sentences"], "number of sentences"))
         except KnowledgeError as error:
             raise KnowledgeError(f"{source}: {error}") from None
         except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -161,7 +167,7 @@ class Knowledge:
             data = json.loads(path.read_text(encoding="utf-8"))
         except OSError as error:
             raise KnowledgeError(f"{path}: cannot be read ({error.strerror}); give a knowledge file") from None
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:  # RecursionError: brackets nested without end
             raise KnowledgeError(f"{path}: is not JSON ({error}); give a file that `showtell learn` wrote") from None
         return cls.from_json(data, str(path))
 

@@ -15,6 +15,7 @@ from learning.concepts.equality_tests import (
 from learning.concepts.feature_space import FeatureSpace
 from learning.concepts.gaussian import Gaussian, merged, squared_mahalanobis, stacked
 from learning.errors import PerceptionError
+from learning.saved_numbers import saved_count
 from robots.pose import FloatArray
 
 SIGNIFICANCE = 0.001
@@ -164,19 +165,26 @@ class IncrementalMixture:
         rows, columns = mixture._kept_entries()
         for number, entry in data["components"].items():
             mean = np.array(entry["mean"], dtype=np.float64)
+            entries = np.array(entry["covariance"], dtype=np.float64)
+            if entries.shape != rows.shape:
+                raise ValueError(f"concept {space.name}_{number}: covariance must be {len(rows)} numbers")
             covariance = np.zeros((space.dimension, space.dimension))
-            covariance[rows, columns] = entry["covariance"]
-            covariance[columns, rows] = entry["covariance"]
+            covariance[rows, columns] = entries
+            covariance[columns, rows] = entries
             if mean.shape != (space.dimension,) or not np.all(np.isfinite(mean)):
                 raise ValueError(f"concept {space.name}_{number}: mean must be {space.dimension} finite numbers")
-            if not np.all(np.isfinite(covariance)) or np.any(np.diag(covariance) <= 0.0):
-                raise ValueError(f"concept {space.name}_{number}: variances must be finite and positive")
-            mixture._components[int(number)] = Gaussian(mean, covariance, float(entry["count"]), int(entry["demos"]))
+            if not np.all(np.isfinite(covariance)) or np.any(np.linalg.eigvalsh(covariance) <= 0.0):
+                raise ValueError(f"concept {space.name}_{number}: covariance must be finite and positive definite")
+            count = saved_count(entry["count"], f"concept {space.name}_{number}: count")
+            demos = saved_count(entry["demos"], f"concept {space.name}_{number}: demos", least=1)
+            if count == 0.0:
+                raise ValueError(f"concept {space.name}_{number}: count is 0, expected more")
+            mixture._components[int(number)] = Gaussian(mean, covariance, count, int(demos))
         mixture._aliases = {int(number): int(kept) for number, kept in data["aliases"].items()}
-        mixture._next_number = int(data["next"])
-        mixture._demos = int(data["demos"])
-        known = {*mixture._components, *mixture._aliases}
-        if known != set(range(mixture._next_number)) or len(known) < len(mixture._components) + len(mixture._aliases):
+        mixture._next_number = int(saved_count(data["next"], f"numbers given in {space.name}"))
+        mixture._demos = int(saved_count(data["demos"], f"demos of {space.name}"))
+        known = sorted([*mixture._components, *mixture._aliases])
+        if len(known) != mixture._next_number or known != list(range(len(known))):
             raise ValueError(
                 f"numbers of {space.name} must be 0..{mixture._next_number - 1}, each a concept or an alias"
             )

@@ -5,6 +5,8 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any
 
+from learning.saved_numbers import saved_count
+
 Rule = tuple[str, tuple[str, ...]]
 
 UNSEEN = 0.05
@@ -85,8 +87,8 @@ class Pcfg:
         grammar = cls()
         for left, row in data["rules"].items():
             for right, count in row.items():
-                grammar.add_rule(left, tuple(right.split(" ")), float(count))
+                grammar.add_rule(left, tuple(right.split(" ")), saved_count(count, f"count of '{left} -> {right}'"))
         for left, row in data["terminals"].items():
             for ngram, count in row.items():
-                grammar.add_terminal(left, ngram, float(count))
+                grammar.add_terminal(left, ngram, saved_count(count, f"count of '{left} -> {ngram}'"))
         return grammar

@@ -12,6 +12,8 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any
 
+from learning.saved_numbers import saved_count, saved_number
+
 STEP = 0.3
 """Size of a feature's first step."""
 LARGEST = 6.0
@@ -62,7 +64,8 @@ class Preferences:
         """Rebuild; raises TypeError, ValueError or AttributeError for what `to_json` did not write."""
         preferences = cls()
         for feature, (weight, square) in data.items():
-            preferences.weights[feature], preferences.squares[feature] = float(weight), float(square)
+            preferences.weights[feature] = saved_number(weight, f"weight of '{feature}'")
+            preferences.squares[feature] = saved_count(square, f"squared gradient of '{feature}'")
         return preferences
 
 

@@ -144,6 +144,8 @@ class ActionGraphlet:
             if closed not in (0, 1) or touching not in (0, 1) or int(location) < 0:
                 raise ValueError(f"graphlet state {row} must be [closed 0 or 1, touching 0 or 1, location 0 or more]")
             states.append(GraphletState(bool(closed), bool(touching), int(location)))
+        if not states:
+            raise ValueError("a graphlet must have at least one state")
         return cls(tuple(states))
 
     def _overlap(self, other: "ActionGraphlet") -> int:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from learning.concept_id import Concept
+from learning.saved_numbers import saved_count
 
 TAU = 5.0
 """Decay constant of the learning curve (thesis 4.3: between 5 and 10)."""
@@ -129,18 +130,19 @@ class CorrelationMatrix:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> "CorrelationMatrix":
-        """Rebuild K; raises KeyError, TypeError or ValueError for what `to_json` did not write."""
+        """Rebuild K; raises KeyError, TypeError, ValueError or AttributeError for what `to_json` did not write."""
         matrix = cls()
-        matrix.demos = float(data["sentences"])
+        matrix.demos = saved_count(data["sentences"], "number of sentences")
         for concept, count in data["concepts"].items():
-            matrix.concept_counts[Concept.parse(concept)] = float(count)
+            matrix.concept_counts[Concept.parse(concept)] = saved_count(count, f"count of {concept}", least=1)
         for ngram, (count, first, frozen, row) in data["ngrams"].items():
-            matrix.ngram_counts[ngram] = float(count)
-            matrix._first_heard[ngram] = float(first)
+            matrix.ngram_counts[ngram] = saved_count(count, f"count of '{ngram}'", least=1)
+            matrix._first_heard[ngram] = saved_count(first, f"first hearing of '{ngram}'")
             if frozen is not None:
-                matrix.frozen_at[ngram] = float(frozen)
+                matrix.frozen_at[ngram] = saved_count(frozen, f"last update of '{ngram}'", least=1)
             for concept, together in row.items():
-                matrix.joint_counts[ngram][Concept.parse(concept)] = float(together)
+                amount = saved_count(together, f"count of '{ngram}' with {concept}")
+                matrix.joint_counts[ngram][Concept.parse(concept)] = amount
         return matrix
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from learning.concept_id import Concept
+from learning.saved_numbers import saved_count
 
 KEPT = 0.05
 """Smallest count that is saved."""
@@ -68,5 +69,6 @@ class Grounding:
         grounding = cls()
         for ngram, row in data.items():
             for concept, count in row.items():
-                grounding.add(ngram, None if concept == "none" else Concept.parse(concept), float(count))
+                amount = saved_count(count, f"count of '{ngram}' with {concept}")
+                grounding.add(ngram, None if concept == "none" else Concept.parse(concept), amount)
         return grounding

@@ -99,7 +99,7 @@ class LanguageLearner:
 
     def hypotheses(self, ngrams: list[str], salient: set[Concept]) -> dict[Pair, float]:
         """Select (4.2) and filter (4.3 to 4.6) grounding hypotheses for the n-grams and concepts at hand."""
-        strengths = {(ngram, concept): self.strength(ngram, concept) for ngram in ngrams for concept in salient}
+        strengths = {(ngram, concept): self.strength(ngram, concept) for ngram in ngrams for concept in sorted(salient)}
         strengths = {pair: k if k >= LEAST_STRENGTH else 0.0 for pair, k in strengths.items()}
         chosen = select_groundings(strengths)
         # The program takes the strongest pairs up to its bound, so of "red" and "the red", equally strong, it may have
@@ -171,7 +171,7 @@ class LanguageLearner:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> "LanguageLearner":
-        """Rebuild; raises KeyError, TypeError or ValueError for what `to_json` did not write."""
+        """Rebuild; raises KeyError, TypeError, ValueError or AttributeError for what `to_json` did not write."""
         learner = cls()
         learner.correlation = CorrelationMatrix.from_json(data["correlation"])
         learner.focus = CorrelationMatrix.from_json(data["focus"])

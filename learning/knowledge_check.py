@@ -1,0 +1,45 @@
+"""Whether the parts of a knowledge file fit together: language may speak only of concepts and elements that exist."""
+
+from collections.abc import Iterable
+
+from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, REFERENCE, REFERENCE_SPACE, RELATION_SPACES, Concept
+from learning.concepts import ConceptSpaces
+from learning.grounding.language_learner import LanguageLearner
+
+ELEMENTS = frozenset(
+    (
+        *("command", "sequence", "event", "entity", "destination", "spatial-relation"),
+        *(ACTION_SPACE, REFERENCE_SPACE, *OBJECT_SPACES, *RELATION_SPACES),
+    )
+)
+"""All RCL elements (thesis table 5.1) and feature spaces that a rule of the grammar may name."""
+
+
+def check_language(language: LanguageLearner, spaces: ConceptSpaces) -> None:
+    """Check that K, Φ and Π name nothing that was never learned.
+
+    Raises:
+        ValueError: They do; the message names the concept or the element.
+    """
+    for matrix in (language.correlation, language.focus):
+        _check_concepts(matrix.concept_counts, spaces, "K")
+        for row in matrix.joint_counts.values():
+            _check_concepts(row, spaces, "K")
+    _check_concepts((c for c in language.grounding.concept_totals if c is not None), spaces, "Φ")
+    grammar = language.grammar
+    named = {*grammar.rules, *grammar.terminals}
+    named.update(child for row in grammar.rules.values() for right in row for child in right)
+    for label in sorted(named - ELEMENTS):
+        raise ValueError(f"the grammar names an unknown element '{label}'; known are {', '.join(sorted(ELEMENTS))}")
+
+
+def _check_concepts(concepts: Iterable[Concept], spaces: ConceptSpaces, where: str) -> None:
+    for concept in concepts:
+        if concept.space == ACTION_SPACE:
+            known = 1 <= concept.number <= len(spaces.actions)
+        elif concept.space in spaces.mixtures:
+            known = 0 <= concept.number < spaces.mixtures[concept.space].numbers_given
+        else:
+            known = concept == REFERENCE
+        if not known:
+            raise ValueError(f"{where} speaks of {concept}, which is no learned concept")
