@@ -56,9 +56,14 @@ def new_folder(path: Path) -> Path:
     """Create a folder if it is not there yet, and return it.
 
     Raises:
-        InputError: There is a file of that name.
+        InputError: There is a file of that name, or the folder cannot be made or written to.
     """
     if path.exists() and not path.is_dir():
         raise InputError(f"{path} is a file; name a folder")
-    path.mkdir(parents=True, exist_ok=True)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"the folder {path} cannot be made: {error.strerror}") from error
+    if not os.access(path, os.W_OK):
+        raise InputError(f"the folder {path} cannot be written to")
     return path

@@ -33,7 +33,9 @@ def _experiments() -> None:
 def train_robots(
     directory: Annotated[Path, typer.Argument(help="Directory with commands.txt and configuration.txt.")],
     knowledge: Annotated[Path | None, typer.Option(help="Ask this knowledge all commands.")] = None,
-    folds: Annotated[int | None, typer.Option(help="Learn and ask in this many folds (4 without --knowledge).")] = None,
+    folds: Annotated[
+        int | None, typer.Option(min=2, help="Learn and ask in this many folds (4 without --knowledge).")
+    ] = None,
     split: Annotated[Split, typer.Option(help="What shares a fold: scenes of a group, or nothing.")] = Split.GROUPS,
     jobs: Annotated[int, typer.Option(min=0, help="Processes for folds; 0 takes one a core.")] = 0,
     failures: Annotated[int, typer.Option(min=0, help="How many failures to list.")] = 10,
@@ -56,6 +58,8 @@ def train_robots(
     if knowledge is not None and folds is not None:
         raise InputError("give --knowledge to ask what was learned before, or --folds to learn anew, not both")
     release = Release.load(directory)
+    if not release.commands:
+        raise InputError(f"{directory}: commands.txt holds no command; there is nothing to ask")
     if knowledge is not None:
         student = ReleaseStudent(Knowledge.load(knowledge), np.random.default_rng(seed))
         with out.progress("asking", len(release.commands)) as advance:

@@ -79,12 +79,15 @@ def _from_release(out: Output, learner: "Learner", directory: Path | None, seed:
     """Learn from the key frames of a release; returns what came of each scene and the time it took [s]."""
     import numpy as np
 
+    from executor.errors import InputError
     from executor.release_student import Studied, study_release
     from learning.train_robots import Release
 
     release = Release.load(directory or Path())
     lessons: list[tuple[Lesson, float]] = []
     scenes = release.one_block_scenes()
+    if not scenes:
+        raise InputError(f"{directory}: in no scene does exactly one block move; there is nothing to learn from")
     with out.progress("learning", len(scenes)) as advance:
 
         def keep(studied: Studied) -> None:

@@ -26,13 +26,18 @@ def replay(
     """
     from executor.demo_files import read_demo
     from executor.errors import InputError
-    from executor.files import existing
+    from executor.files import check_place, existing
+    from executor.picture import check_suffix
     from teleop import check_replay
 
     del seed  # the demo's own seed is in its file
     out = Output(as_json)
+    if picture is not None:
+        check_place(check_suffix(picture))
     recorded = read_demo(existing(demo, "demo"))
     report = check_replay(recorded)
+    if check and not report.complete:
+        raise InputError(f"{demo}: the demo ends early; only the {report.states} states before that could be compared")
     factor = f"{report.simulated:.1f} s simulated in {report.wall:.1f} s, {report.real_time_factor:.1f} x real time"
     out.say(f"{demo.name}: " + " / ".join(recorded.utterances or ("nothing was said",)))
     out.say(f"{len(recorded.inputs)} inputs played; {factor}")
@@ -57,20 +62,16 @@ def replay(
             "picture": picture,
         }
     )
-    if check and not report.complete:
-        raise InputError(f"{demo}: the demo ends early; only the {report.states} states before that could be compared")
     if check and not report.success:
         raise typer.Exit(FAILED)
 
 
 def _film(path: Path, demo: "Demo") -> None:
     """Write a film of a demo: its inputs played once more, a view every fifth of a second."""
-    from executor.files import check_place
-    from executor.picture import check_suffix, save_film, save_strip
+    from executor.picture import save_film, save_strip
     from teleop.session import Session
     from twin import World
 
-    check_place(check_suffix(path))
     views = []
     every = max(1, demo.rate // 5)
     with World.from_scene(demo.scene) as world:

@@ -174,7 +174,9 @@ class IncrementalMixture:
             if mean.shape != (space.dimension,) or not np.all(np.isfinite(mean)):
                 raise ValueError(f"concept {space.name}_{number}: mean must be {space.dimension} finite numbers")
             if not np.all(np.isfinite(covariance)) or np.any(np.linalg.eigvalsh(covariance) <= 0.0):
-                raise ValueError(f"concept {space.name}_{number}: covariance must be finite and positive definite")
+                raise ValueError(
+                    f"concept {space.name}_{number}: variances must be finite and positive, in every direction"
+                )
             count = saved_count(entry["count"], f"concept {space.name}_{number}: count")
             demos = saved_count(entry["demos"], f"concept {space.name}_{number}: demos", least=1)
             if count == 0.0:

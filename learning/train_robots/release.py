@@ -98,6 +98,8 @@ def _scenes(path: Path) -> dict[int, Scene]:
                 raise record[0].error(f"group {layout.group} image {layout.image} stands twice")
             layouts[layout.group, layout.image] = layout
             record = []
+    if not layouts:
+        raise ReleaseError(f"{path}: holds no layout; a layout begins with a line of group and image")
     groups = sorted({group for group, _ in layouts})
     scenes: dict[int, Scene] = {}
     for group in groups:

@@ -129,6 +129,11 @@ def test_replay_reaches_the_recorded_states(demos: Path, truncated: Path, tmp_pa
     assert said["success"] and said["max_error"] <= 1e-6 and said["states"] > 30
     assert film.stat().st_size > 1000
     complains(run("replay", truncated, "--check"), f"{truncated}: the demo ends early")
+    both = run("replay", truncated, "--check", "--json")
+    assert both.exit_code == 2
+    assert both.stdout.count("\n") <= 1  # one object, not the figures and then the error
+    complains(run("replay", demo, "--picture", tmp_path / "none" / "x.gif"), "does not exist")
+    complains(run("replay", demo, "--picture", tmp_path / "x.txt"), "x.txt")
     complains(run("replay", tmp_path / "none.mcap"), "none.mcap", "no such demo")
 
 
@@ -270,3 +275,21 @@ def test_a_malformed_release_is_named_by_file_and_line(release: Path, tmp_path: 
     for words in (("evaluate", "train-robots", broken), ("learn", "--train-robots", broken, "-o", tmp_path / "k.json")):
         complains(run(*words), "commands.txt", "1")
     complains(run("evaluate", "train-robots", tmp_path / "none"), "none")
+
+
+def test_a_release_with_nothing_in_it_teaches_nothing(release: Path, tmp_path: Path) -> None:
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    for name in ("commands.txt", "configuration.txt"):
+        (empty / name).touch()
+    for words in (
+        ("learn", "--train-robots", empty, "-o", tmp_path / "k.json"),
+        ("import", "train-robots", empty, "-o", tmp_path / "d"),
+        ("evaluate", "train-robots", empty),
+    ):
+        complains(run(*words), "configuration.txt", "holds no layout")
+    still = "".join(f"1\t{image}\r\n0\t0\t7\tO\r\n1\t1\t0\tR\t1\r\n\r\n" for image in range(1, 6))
+    (empty / "configuration.txt").write_text(still)
+    complains(run("learn", "--train-robots", empty, "-o", tmp_path / "k.json"), "exactly one block move")
+    complains(run("evaluate", "train-robots", empty), "commands.txt", "holds no command")
+    assert run("evaluate", "train-robots", release, "--folds", "0").exit_code == 2

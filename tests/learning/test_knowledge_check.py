@@ -40,7 +40,7 @@ LANGUAGE = ("language", "grounding", "red")
     [
         ((*FIRST, "mean"), [0.1], "colour_0: mean must be 3 finite numbers"),
         ((*FIRST, "covariance"), [1.0], "colour_0: covariance must be 6 numbers"),
-        ((*FIRST, "covariance"), [1.0, 5.0, 5.0, 1.0, 5.0, 1.0], "colour_0: covariance must be finite and positive"),
+        ((*FIRST, "covariance"), [1.0, 5.0, 5.0, 1.0, 5.0, 1.0], "colour_0: variances must be finite and positive"),
         ((*FIRST, "count"), -5, "colour_0: count is -5, expected 0 or more"),
         ((*FIRST, "count"), 0, "colour_0: count is 0, expected more"),
         ((*FIRST, "count"), math.nan, "colour_0: count is nan, expected a finite number"),
