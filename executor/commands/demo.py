@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from executor.showcase import Lessons
     from executor.trial import Verdict
 
-DEMOS = 150
+DEMOS = 200
 COMMANDS = 12
 VARIETY = 0.25
 ENOUGH = 0.9
