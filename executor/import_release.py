@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from executor.errors import ExecutorError, InputError
+from executor.quiet import load_physics
 from learning.train_robots import Release, Scene, ShownMove, scene_spec
 from robots.errors import ShowtellError
 from twin.board import BLOCK, CELL, cell_centre
@@ -195,7 +196,7 @@ def _driven(todo: list[_Job], jobs: int) -> Iterator[SceneOutcome]:
             yield _drive(job)
         return
     # Spawned, not forked: the progress bar has a thread, and physics must not be shared.
-    pool = ProcessPoolExecutor(min(jobs, len(todo)), get_context("spawn"), initializer=_leave_interrupts_to_parent)
+    pool = ProcessPoolExecutor(min(jobs, len(todo)), get_context("spawn"), initializer=_start_worker)
     try:
         waiting = {pool.submit(_drive, job) for job in todo}
         while waiting:
@@ -208,7 +209,9 @@ def _driven(todo: list[_Job], jobs: int) -> Iterator[SceneOutcome]:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _leave_interrupts_to_parent() -> None:
+def _start_worker() -> None:
+    """Leave interrupts to the parent, and be quiet."""
+    load_physics()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

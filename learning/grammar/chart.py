@@ -23,7 +23,7 @@ BEAM = 12
 ROOT_BEAM = 30
 """The same for events and sequences, whose readings are compared with one another."""
 SETTLED = 40.0
-"""Sightings of an element after which orders of its children that were never seen are no longer tried."""
+"""Sightings of an element after which orders of its children that were hardly ever seen are no longer tried."""
 
 PROPERTIES = frozenset((*OBJECT_SPACES, REFERENCE_SPACE))
 EVENT_PARTS = ("action", "entity", "destination")
@@ -35,7 +35,7 @@ USUAL_EVENTS = (
     ("action", "destination"),
 )
 UNUSUAL = -3.0
-"""Log weight of an order of children in which what governs does not come first, until it was seen."""
+"""Added to the log weight of an order of children in which what governs does not come first, seen before or not."""
 ROOTS = frozenset(("event", "sequence", "event*"))
 
 
@@ -119,7 +119,6 @@ class Chart:
         scene: SceneSets,
         actions: ActionTable,
         preferences: Preferences,
-        beam: int = BEAM,
     ) -> None:
         """Fill the chart.
 
@@ -131,14 +130,12 @@ class Chart:
             scene: What concepts are true of.
             actions: The known action graphlets.
             preferences: Weights of rules beside their probabilities.
-            beam: Items kept of one kind of element over one span.
         """
         self.n_words = n_words
         self.grammar = grammar
         self.scene = scene
         self.actions = actions
         self.preferences = preferences
-        self.beam = beam
         self._skipped = [0.0]
         for cost in skip:
             self._skipped.append(self._skipped[-1] + cost)
@@ -215,7 +212,7 @@ class Chart:
         kept: Cell = {}
         for item in sorted(found.values(), key=lambda item: -item.score):
             alike = kept.setdefault(item.label, [])
-            if len(alike) < (ROOT_BEAM if item.label in ROOTS else self.beam):
+            if len(alike) < (ROOT_BEAM if item.label in ROOTS else BEAM):
                 alike.append(item)
         return kept
 

@@ -12,6 +12,9 @@ Rule = tuple[str, tuple[str, ...]]
 UNSEEN = 0.05
 """What a rule that was never seen counts, so that a new order of words can still be tried while learning."""
 
+POSSIBLE = 20
+"""Number of rules of one element that are taken to be possible, seen or not."""
+
 FLOOR = 0.03
 """No rule is searched as if it were rarer than this: what was learned first must not shut out what comes later."""
 
@@ -55,9 +58,9 @@ class Pcfg:
         return self.terminals[left].get(ngram, 0.0) / total if total > 0 and left in self.terminals else 0.0
 
     def log_weight(self, left: str, right: tuple[str, ...]) -> float:
-        """Log probability of a rule with `UNSEEN` counts for every rule not seen yet, for searching."""
+        """Log probability of a rule for searching: `UNSEEN` counts more for every rule, and never below `FLOOR`."""
         seen = self.rules[left].get(right, 0.0) if left in self.rules else 0.0
-        share = (seen + UNSEEN) / (self._totals.get(left, 0.0) + 20 * UNSEEN)
+        share = (seen + UNSEEN) / (self._totals.get(left, 0.0) + POSSIBLE * UNSEEN)
         return math.log(max(share, FLOOR))
 
     def total(self, left: str) -> float:
@@ -65,7 +68,7 @@ class Pcfg:
         return self._totals.get(left, 0.0)
 
     def seen_start(self, left: str, right: tuple[str, ...]) -> bool:
-        """Whether any rule of `left` seen so far begins with the children `right`."""
+        """Whether any rule of `left` seen so far (for more than half a reading) begins with the children `right`."""
         return any(rule[: len(right)] == right and count > 0.5 for rule, count in self.rules.get(left, {}).items())
 
     def to_json(self) -> dict[str, Any]:

@@ -26,9 +26,8 @@ NEGLIGIBLE = 0.05
 class Preferences:
     """Weights of features and their accumulated squared gradients."""
 
-    def __init__(self, step: float = STEP) -> None:
+    def __init__(self) -> None:
         """Start indifferent."""
-        self.step = step
         self.weights: defaultdict[str, float] = defaultdict(float)
         self.squares: defaultdict[str, float] = defaultdict(float)
 
@@ -42,7 +41,7 @@ class Preferences:
             if abs(slope) < 1e-6:
                 continue
             self.squares[feature] += slope * slope
-            moved = self.weights[feature] + self.step * slope / math.sqrt(self.squares[feature] + 1.0)
+            moved = self.weights[feature] + STEP * slope / math.sqrt(self.squares[feature] + 1.0)
             self.weights[feature] = max(-LARGEST, min(LARGEST, moved))
 
     def rename(self, old_end: str, new_end: str) -> None:

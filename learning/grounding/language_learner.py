@@ -130,8 +130,7 @@ class LanguageLearner:
         self.preferences.follow(gradient)
         every = ngrams_of(words)
         for reading, share in zip(validated, shares, strict=True):
-            amount = share
-            if amount < LEAST_SHARE:
+            if share < LEAST_SHARE:
                 continue
             used: set[str] = set()
             covered: set[int] = set()
@@ -140,17 +139,17 @@ class LanguageLearner:
                 used.add(ngram)
                 covered.update(range(leaf.first, leaf.after))
                 if leaf.concept is not None:
-                    self.grounding.add(ngram, leaf.concept, amount)
-                    self.grammar.add_terminal(leaf.label, ngram, amount)
+                    self.grounding.add(ngram, leaf.concept, share)
+                    self.grammar.add_terminal(leaf.label, ngram, share)
             for ngram, spans in every.items():
                 if ngram in used:
                     continue
-                passed_over = any(first not in covered for first, _ in spans)
-                if passed_over if " " not in ngram else ngram in self.grounding.counts:
-                    self.grounding.add(ngram, None, amount)
-            self.grammar.add_rule("command", (reading.item.label,), amount)
+                # A word is passed over where no leaf covers it; a longer n-gram counts only if it was counted before.
+                if ngram in self.grounding.counts if " " in ngram else any(at not in covered for at, _ in spans):
+                    self.grounding.add(ngram, None, share)
+            self.grammar.add_rule("command", (reading.item.label,), share)
             for left, right in reading.item.tree().rules():
-                self.grammar.add_rule(left, right, amount)
+                self.grammar.add_rule(left, right, share)
 
     def rename(self, old: Concept, new: Concept) -> None:
         """Carry over all that was learned of a concept that turned out to be another."""

@@ -17,16 +17,19 @@ PRIOR_SHARE = 1.0
 NONE_WEIGHT = 1.0
 """Validations that "means nothing" starts with, for every n-gram."""
 LEAST_PROBABILITY = 0.02
-"""Meanings rarer than this are not tried any more."""
+"""Meanings rarer than this are not tried any more, unless they are candidates."""
 LEAST_COUNT = 0.2
 """Validations that a meaning needs before it is tried without a fresh correlation."""
 DOUBT = 3.0
 """Power of 1 - K in the prior of meaning nothing: what goes with some concept half the time is no function word."""
+LEAST_DOUBT = 0.02
+"""The prior of meaning nothing never falls below this, however strong the association."""
 SAID = 0.3
-"""Weight of the other direction, P(δ | v) (equation 5.2), beside P(v | δ). A word that is not needed to single a thing
-out ("cube" among cubes) would slowly become a function word by Φ alone; but of all function words it is a rare one."""
+"""Weight of the other direction, P(δ | v) (equation 5.2), beside P(v | δ), for v = nothing alone. A word that is not
+needed to single a thing out ("cube" among cubes) would slowly become a function word by Φ alone; but of all function
+words it is a rare one."""
 SMOOTH = 2.0
-"""Sightings added to the total of a concept, so that the first n-gram it is validated with does not own it."""
+"""Added to how much was ever passed over, so that the first word that was does not stand for all function words."""
 REFERENCE_PRIOR = 0.05
 """Correlation lent to every single word as a name for the thing spoken of before."""
 
@@ -45,10 +48,11 @@ def lexical_entries(
         grounding: Φ so far.
         preferences: Weights beside Φ.
         candidates: While learning, hypotheses that passed the filter, with their strength K; None when interpreting.
-        meant: While learning, each word's strongest association; the stronger, the less it is a function word.
+        meant: While learning, each word's strongest association; the stronger, the less it is a function word. None
+            when interpreting.
 
     Returns:
-        Lexical entries, and the log probability of passing over each word, (n_words,).
+        Lexical entries, and the weight of passing over each word, (n_words,): log probabilities, plus preferences.
     """
     entries: list[LexicalEntry] = []
     skip = [0.0] * len(words)
@@ -64,7 +68,7 @@ def lexical_entries(
         total = grounding.total(ngram)
         weight = PRIOR_WEIGHT + PRIOR_SHARE * total if candidates is not None else 0.0
         nothing = NONE_WEIGHT + weight * max(
-            0.02, (1.0 - min(1.0, max(sum(prior.values()), (meant or {}).get(ngram, 0.0)))) ** DOUBT
+            LEAST_DOUBT, (1.0 - min(1.0, max(sum(prior.values()), (meant or {}).get(ngram, 0.0)))) ** DOUBT
         )
         mass = total + nothing + weight * sum(prior.values())
         meanings: set[Concept] = set(prior)
