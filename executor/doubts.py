@@ -33,12 +33,26 @@ def doubt(reading: "Interpretation", knowledge: "Knowledge", percept: "Percept")
         if obstacle:
             return obstacle
         return f"nothing here is {_quoted(reading.unheeded)}, so I do nothing"
+    strange = _strange_name(reading)
+    if strange:
+        return f"“{strange}” was never heard and may say which block is meant, so I do nothing"
     several = len(reading.object_candidates)
     if several > 1:
         nodes = reading.tree.nodes() if reading.tree else ()
         entity = next((node for node in nodes if node.label == "entity"), None)
         said = f"“{' '.join(reading.words[entity.first - 1 : entity.last])}”" if entity else "the words"
         return f"{several} objects fit {said}; say which one"
+    return ""
+
+
+def _strange_name(reading: "Interpretation") -> str:
+    """A word that was never heard where the name of a thing ends without any word for its kind (`the green sphere`)."""
+    for node in reading.tree.nodes() if reading.tree else ():
+        kinds = {leaf.concept.space for leaf in node.nodes() if leaf.concept is not None}
+        if node.label == "entity" and kinds and kinds <= {"colour", "location"} and node.last < len(reading.words):
+            after = reading.words[node.last]  # words count from 1, so this is the next one
+            if after in reading.unknown:
+                return after
     return ""
 
 

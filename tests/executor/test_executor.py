@@ -83,6 +83,7 @@ def test_plan_only_moves_nothing(knowledge: Knowledge) -> None:
     [
         (SCENE, "schiebe den roten Würfel", r"never heard: schiebe, den, roten, würfel"),
         (SCENE, "take the magenta cube", r"“magenta”"),
+        (SCENE, "take the white sphere", r"“sphere” was never heard"),
         (SCENE, "take the cube", r"3 objects fit “cube”; say which one"),
         (SCENE, "take the green cube", r"another block stands on what is “green”, “cube”"),
         (SCENE, "drop the red cube", r"“drop” needs a block in the gripper, and the robot holds nothing"),
