@@ -18,6 +18,9 @@ HABITUATION = 400.0
 MEMORY = 250.0
 """Sentences after which an n-gram that was heard only once is forgotten."""
 
+WORTH_KEEPING = 0.1
+"""Strength beyond chance from which a longer n-gram is saved."""
+
 
 class CorrelationMatrix:
     """Counts of n-grams, concepts and both together, and the strength of association that follows from them.
@@ -111,7 +114,8 @@ class CorrelationMatrix:
     def to_json(self) -> dict[str, Any]:
         """Counts of concepts, and for each n-gram its count, when it was first heard or frozen, and its row.
 
-        Of n-grams that were heard once only single words are saved: the others are chance combinations, mostly.
+        Longer n-grams are saved only where they go with some concept more than chance has it: the others are chance
+        combinations, and counting them anew loses nothing.
         """
         return {
             "sentences": int(self.demos),
@@ -124,7 +128,7 @@ class CorrelationMatrix:
                     {str(c): int(n) for c, n in sorted(self.joint_counts[ngram].items())},
                 ]
                 for ngram, count in sorted(self.ngram_counts.items())
-                if count >= 2 or " " not in ngram
+                if " " not in ngram or (count >= 2 and self.strongest(ngram) >= WORTH_KEEPING)
             },
         }
 
