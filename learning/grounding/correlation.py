@@ -97,7 +97,9 @@ class CorrelationMatrix:
 
     def rename(self, old: Concept, new: Concept) -> None:
         """Carry the counts of a concept over to the one it was merged into."""
-        self.concept_counts[new] += self.concept_counts.pop(old, 0.0)
+        if old not in self.concept_counts:
+            return
+        self.concept_counts[new] += self.concept_counts.pop(old)
         for row in self.joint_counts.values():
             if old in row:
                 row[new] += row.pop(old)

@@ -80,6 +80,13 @@ def test_renaming_adds_the_counts_up() -> None:
     assert BLUE not in matrix.concept_counts
 
 
+def test_renaming_what_was_never_counted_leaves_no_trace() -> None:
+    matrix = matrix_of([(["red"], [RED])])
+    before = matrix.to_json()
+    matrix.rename(BLUE, Concept("colour", 7))
+    assert matrix.to_json() == before
+
+
 words = st.lists(st.sampled_from("abcd"), min_size=1, max_size=3)
 concepts = st.lists(st.sampled_from([RED, BLUE, Concept("shape", 1)]), max_size=3)
 
