@@ -58,12 +58,8 @@ class Learner:
             concepts: The demo's own mixtures where they were computed before (`fit_demo`).
         """
         knowledge = self.knowledge
-        before = {
-            name: mixture.numbers_given - len(mixture.components) for name, mixture in knowledge.spaces.mixtures.items()
-        }
         knowledge.spaces.update(fit_demo(observation, self.rng) if concepts is None else concepts)
-        if before != {n: m.numbers_given - len(m.components) for n, m in knowledge.spaces.mixtures.items()}:
-            knowledge.follow_aliases()
+        knowledge.follow_aliases()
         knowledge.demos += 1
         try:
             percept, shown = perceive(observation, knowledge.spaces)

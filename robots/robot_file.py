@@ -1,13 +1,12 @@
 """What a `robot.toml` says, checked."""
 
-import tomllib
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from .errors import RobotError
-from .validation import first_problem
+from .validation import read_toml
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -80,13 +79,4 @@ def read_robot_file(path: Path) -> RobotFile:
     Raises:
         RobotError: The file cannot be read, is not TOML, or a value is wrong; names file, key and what is allowed.
     """
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RobotError(f"{path}: cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise RobotError(f"{path}: not valid TOML: {error}") from error
-    try:
-        return RobotFile.model_validate(data)
-    except ValidationError as error:
-        raise RobotError(first_problem(error, str(path), RobotFile)) from error
+    return read_toml(path, RobotFile, RobotError)

@@ -1,9 +1,33 @@
-"""One-line messages from pydantic's validation errors: file, key, value, what is allowed."""
+"""Files that users write, checked by pydantic; one-line messages: file, key, value, what is allowed."""
 
+import tomllib
 from collections.abc import Sequence
-from typing import Any, get_args
+from pathlib import Path
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
+
+from .errors import ShowtellError
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def read_toml(path: Path, model: type[Model], error_type: type[ShowtellError]) -> Model:
+    """Read a TOML file and check it against a model.
+
+    Raises:
+        ShowtellError: As `error_type`: the file cannot be read, is not TOML, or a value is wrong; names file and key.
+    """
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise error_type(f"{path}: cannot be read: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise error_type(f"{path}: not valid TOML: {error}") from error
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise error_type(first_problem(error, str(path), model)) from error
 
 
 def first_problem(error: ValidationError, source: str, model: type[BaseModel]) -> str:

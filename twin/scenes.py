@@ -1,12 +1,10 @@
 """From what a user calls a scene to its specification."""
 
-import tomllib
 from pathlib import Path
 
 import numpy as np
-from pydantic import ValidationError
 
-from robots.validation import first_problem
+from robots.validation import read_toml
 
 from .board_scene import random_board
 from .errors import SceneError
@@ -44,13 +42,4 @@ def read_scene(path: Path) -> SceneSpec:
     Raises:
         SceneError: The file cannot be read, is not TOML, or a value is wrong; names file, field and value.
     """
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise SceneError(f"{path}: not valid TOML: {error}") from error
-    try:
-        return SceneSpec.model_validate(data)
-    except ValidationError as error:
-        raise SceneError(first_problem(error, str(path), SceneSpec)) from error
+    return read_toml(path, SceneSpec, SceneError)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, REFERENCE_SPACE, RELATION_SPACES, Concept
 from learning.grammar.actions import ActionTable
-from learning.grammar.pcfg import Pcfg
+from learning.grammar.pcfg import Pcfg, Rule
 from learning.grammar.preferences import Preferences, rule_feature
 from learning.grammar.rcl import RclNode
 from learning.grammar.scene import SceneSets
@@ -70,6 +70,10 @@ class Item:
             self.label, self.concept, self.first + 1, self.after, tuple(child.tree() for child in self.children)
         )
 
+    def covered(self) -> set[int]:
+        """Positions of the words that a lexical item stands for; the others are passed over."""
+        return {position for leaf in self.leaves() for position in range(leaf.first, leaf.after)}
+
     def leaves(self) -> list["Item"]:
         """List the lexical items from left to right."""
         if self.concept is not None:
@@ -94,6 +98,10 @@ class Reading:
     moved: int
     places: int
     score: float
+
+    def rules(self) -> list[Rule]:
+        """List the productions used, that of the whole command first."""
+        return [("command", (self.item.label,)), *self.item.tree().rules()]
 
     @property
     def moves(self) -> int:
@@ -351,8 +359,8 @@ class Chart:
                 return None
             # A block that is let go without a word about where falls straight down.
             places = 1 << scene.column_of[scene.percept.held]
-        elif moved.bit_count() == 1:
-            places &= ~(1 << scene.column_of[moved.bit_length() - 1]) if not starts_held else places
+        elif moved.bit_count() == 1 and not starts_held:
+            places &= ~(1 << scene.column_of[moved.bit_length() - 1])
         return (action, moved, places) if places else None
 
 

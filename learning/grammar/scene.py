@@ -5,6 +5,7 @@ element against the predicates is then an intersection of integers.
 """
 
 from collections import defaultdict
+from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
@@ -91,10 +92,10 @@ def _masks_by_number(numbers: IntArray) -> dict[int, int]:
     return masks
 
 
-def _relation_masks(relations: object) -> dict[Concept, dict[int, int]]:
+def _relation_masks(relations: Mapping[str, IntArray]) -> dict[Concept, dict[int, int]]:
     masks: dict[Concept, dict[int, int]] = {}
     for space in RELATION_SPACES:
-        matrix = relations.get(space)  # type: ignore[attr-defined]
+        matrix = relations.get(space)
         if matrix is None:
             continue
         for i, j in np.argwhere(matrix != NO_CONCEPT):

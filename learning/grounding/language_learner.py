@@ -133,11 +133,10 @@ class LanguageLearner:
             if share < LEAST_SHARE:
                 continue
             used: set[str] = set()
-            covered: set[int] = set()
+            covered = reading.item.covered()
             for leaf in reading.item.leaves():
                 ngram = " ".join(words[leaf.first : leaf.after])
                 used.add(ngram)
-                covered.update(range(leaf.first, leaf.after))
                 if leaf.concept is not None:
                     self.grounding.add(ngram, leaf.concept, share)
                     self.grammar.add_terminal(leaf.label, ngram, share)
@@ -147,8 +146,7 @@ class LanguageLearner:
                 # A word is passed over where no leaf covers it; a longer n-gram counts only if it was counted before.
                 if ngram in self.grounding.counts if " " in ngram else any(at not in covered for at, _ in spans):
                     self.grounding.add(ngram, None, share)
-            self.grammar.add_rule("command", (reading.item.label,), share)
-            for left, right in reading.item.tree().rules():
+            for left, right in reading.rules():
                 self.grammar.add_rule(left, right, share)
 
     def rename(self, old: Concept, new: Concept) -> None:
@@ -190,14 +188,12 @@ def _shares(scores: list[float]) -> list[float]:
 def _add_features(gradient: defaultdict[str, float], words: tuple[str, ...], reading: Reading, amount: float) -> None:
     if abs(amount) < 1e-4:
         return
-    covered: set[int] = set()
+    covered = reading.item.covered()
     for leaf in reading.item.leaves():
-        covered.update(range(leaf.first, leaf.after))
         gradient[lexical_feature(" ".join(words[leaf.first : leaf.after]), leaf.concept)] += amount
     for position, word in enumerate(words):
         if position not in covered:
             gradient[skip_feature(word)] += amount
-    gradient[rule_feature("command", (reading.item.label,))] += amount
-    for left, right in reading.item.tree().rules():
+    for left, right in reading.rules():
         gradient[rule_feature(left, right)] += amount
     gradient[MOVES_FEATURE] += amount * math.log(reading.moves)

@@ -130,9 +130,7 @@ class Interpreter:
 
     def _unheeded(self, words: tuple[str, ...], reading: Reading) -> tuple[str, ...]:
         """Words with an established meaning that the reading passes over."""
-        covered: set[int] = set()
-        for leaf in reading.item.leaves():
-            covered.update(range(leaf.first, leaf.after))
+        covered = reading.item.covered()
         grounding = self.knowledge.language.grounding
         found = []
         for position, word in enumerate(words):
