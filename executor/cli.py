@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from executor.commands import demo, demos, do, evaluate, import_demos, inspect, learn, record, replay, robots
+from executor.commands import bench, demo, demos, do, evaluate, import_demos, inspect, learn, record, replay, robots
 from executor.commands.output import ShowtellGroup
 
 app = typer.Typer(
@@ -51,6 +51,7 @@ learn.add_to(app)
 inspect.add_to(app)
 do.add_to(app)
 app.add_typer(evaluate.app, name="evaluate")
+app.add_typer(bench.app, name="bench")
 robots.add_to(app)
 
 

@@ -1,4 +1,4 @@
-"""Geometry of the 8 x 8 board: cells, columns of blocks and the eight colours.
+"""Geometry of the 8 x 8 board: cells, columns of blocks, and what blocks there are.
 
 The board lies in the world's x-y plane, its surface at z = 0. Cell (0, 0) has its corner at the world's origin; the
 robot stands at x < 0 and looks along +x; left is +y. Blocks are smaller than cells so that fingers fit between
@@ -26,8 +26,29 @@ COLOURS_RGB: dict[str, tuple[float, float, float]] = {
     "gray": (0.50, 0.50, 0.50),
     "white": (0.95, 0.95, 0.95),
 }
-"""Surface colour, red green blue in 0..1."""
+"""Surface colour, red green blue in 0..1: the colours of the public release."""
+ALL_COLOURS_RGB: dict[str, tuple[float, float, float]] = {**COLOURS_RGB, "black": (0.06, 0.06, 0.07)}
+"""All colours that a block may have."""
 SHAPES = ("cube", "prism")
+"""The shapes of the public release."""
+ALL_SHAPES = (*SHAPES, "sphere", "cylinder")
+"""All shapes that a block may have; all of them are `BLOCK` wide and high."""
+FLAT_TOPPED = ("cube", "cylinder")
+"""The shapes that another block can stand on."""
+
+CUBE_MASS = 0.050
+PRISM_MASS = 0.025
+"""Masses [kg]; a prism has half of a cube's volume."""
+_HALF = BLOCK / 2
+# The ridge lies along y above the middle; the two triangles are the end faces, which stand upright and face -y and +y.
+PRISM_CORNERS = np.array(
+    [[x, y, -_HALF] for y in (-_HALF, _HALF) for x in (-_HALF, _HALF)] + [[0, -_HALF, _HALF], [0, _HALF, _HALF]]
+)
+"""Corners of a prism around the centre of its bounding box, (6, 3) [m]."""
+PRISM_FACES = np.array([[0, 1, 4], [3, 2, 5], [0, 2, 3], [0, 3, 1], [2, 0, 4], [2, 4, 5], [1, 3, 5], [1, 5, 4]])
+"""Its faces, (8, 3) corner numbers."""
+PRISM_MASS_CENTRE = np.array([0.0, 0.0, -_HALF + BLOCK / 3])
+"""Its centre of mass, (3,) [m]."""
 
 
 def cell_centre(x: int, y: int, z: int) -> FloatArray:

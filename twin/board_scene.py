@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .board import CELLS, COLOURS_RGB, SHAPES, cell_centre
+from .board import ALL_COLOURS_RGB, ALL_SHAPES, CELLS, COLOURS_RGB, FLAT_TOPPED, SHAPES, cell_centre
 from .scene_spec import ObjectSpec, SceneSpec
 
 FEWEST, MOST = 8, 14
@@ -13,17 +13,19 @@ REPEATED = 0.2
 """Probability that a block looks like an earlier one; the others are the only ones of their colour and shape."""
 
 
-def random_board(rng: np.random.Generator, *, seed: int = 0) -> SceneSpec:
-    """Make a board scene of 8 to 14 cubes and prisms in eight colours, some of them stacked.
+def random_board(rng: np.random.Generator, *, seed: int = 0, all_looks: bool = False) -> SceneSpec:
+    """Make a board scene of 8 to 14 blocks, some of them stacked: cubes and prisms in eight colours.
 
-    Nothing stands on a prism, and stacks are at most four high. Most blocks are the only ones of their colour and
-    shape, so that a sentence can name them by both.
+    Nothing stands on a prism or a sphere, and stacks are at most four high. Most blocks are the only ones of their
+    colour and shape, so that a sentence can name them by both.
 
     Args:
         rng: Where chance comes from.
         seed: Number written into the specification.
+        all_looks: Whether spheres, cylinders and black take part too, which the public release does not have.
     """
-    looks = [(colour, shape) for colour in COLOURS_RGB for shape in SHAPES]
+    colours, shapes = (ALL_COLOURS_RGB, ALL_SHAPES) if all_looks else (COLOURS_RGB, SHAPES)
+    looks = [(colour, shape) for colour in colours for shape in shapes]
     rng.shuffle(looks)
     chosen: list[tuple[str, str]] = []
     for _ in range(int(rng.integers(FEWEST, MOST + 1))):
@@ -42,7 +44,7 @@ def random_board(rng: np.random.Generator, *, seed: int = 0) -> SceneSpec:
             cell = (int(x), int(y))
         cells.append((*cell, int(heights[cell])))
         heights[cell] += 1
-        if shape == "cube":
+        if shape in FLAT_TOPPED:
             open_cells.add(cell)
         else:
             open_cells.discard(cell)

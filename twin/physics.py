@@ -3,6 +3,7 @@
 PyBullet's default client is global to the process; nothing here ever uses it, so two worlds do not meet.
 """
 
+import math
 import weakref
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ import pybullet
 from numpy.typing import NDArray
 
 from .errors import TwinError
+from .objects.model import Part
 
 RawPose = tuple[tuple[float, float, float], tuple[float, float, float, float]]
 """Position [m] and quaternion xyzw, as PyBullet gives them."""
@@ -24,6 +26,8 @@ CONTACT_ERP = 0.8
 CONTACT_MARGIN = 0.002
 """How near [m] bodies must be to count as neighbours. With PyBullet's 20 mm, blocks in neighbouring cells keep each
 other awake. Bullet has one such number for the whole process; all our clients set the same."""
+HULL_MARGIN = 0.001
+"""Bullet puts this much [m] around a convex hull; ours are made smaller by as much, so that their surface is true."""
 SLEEP_BELOW = 1e-4
 """Bodies whose squared speed stays below this for two seconds sleep: 10 mm/s or 10 mrad/s."""
 
@@ -99,6 +103,67 @@ class Physics:
         )
         return self._add_body(mass, shape, self._mesh_visual(drawn, triangles, rgb), position)
 
+    def add_parts(
+        self,
+        parts: Sequence[Part],
+        hulls: Path | None,
+        drawn: Sequence[tuple[Path, Rgb]],
+        pose: RawPose,
+        mass: float,
+        inertial: RawPose,
+        inertia: Vector,
+    ) -> int:
+        """Add a body of several convex parts.
+
+        Args:
+            parts: Its parts; those that are hulls are read from a file instead.
+            hulls: OBJ file with a group for each hull, made smaller by `HULL_MARGIN`; None without hulls.
+            drawn: OBJ files of the drawn faces with their colours.
+            pose: Body frame in the world.
+            mass: Mass [kg].
+            inertial: Centre of mass and principal axes in the body frame; `base_pose` gives this frame.
+            inertia: Principal moments, (3,) [kg m^2].
+        """
+        true = [part for part in parts if part.kind != "hull"]
+        kinds = {"box": pybullet.GEOM_BOX, "sphere": pybullet.GEOM_SPHERE, "cylinder": pybullet.GEOM_CYLINDER}
+        files = [str(hulls)] if hulls is not None else []
+        shape = pybullet.createCollisionShapeArray(
+            shapeTypes=[kinds[part.kind] for part in true] + [pybullet.GEOM_MESH] * len(files),
+            halfExtents=[part.size.tolist() for part in true] + [[0, 0, 0]] * len(files),
+            radii=[float(part.size[0]) for part in true] + [0] * len(files),
+            lengths=[2 * float(part.size[2]) for part in true] + [0] * len(files),
+            fileNames=[""] * len(true) + files,
+            collisionFramePositions=[part.pose.position.tolist() for part in true] + [[0, 0, 0]] * len(files),
+            collisionFrameOrientations=[part.pose.orientation_xyzw.tolist() for part in true]
+            + [[0, 0, 0, 1]] * len(files),
+            physicsClientId=self._client,
+        )
+        visual = pybullet.createVisualShapeArray(
+            shapeTypes=[pybullet.GEOM_MESH] * len(drawn),
+            fileNames=[str(path) for path, _ in drawn],
+            rgbaColors=[[*rgb, 1] for _, rgb in drawn],
+            meshScales=[[1, 1, 1]] * len(drawn),
+            visualFramePositions=[[0, 0, 0]] * len(drawn),
+            visualFrameOrientations=[[0, 0, 0, 1]] * len(drawn),
+            physicsClientId=self._client,
+        )
+        if shape < 0 or visual < 0:
+            raise TwinError(f"PyBullet cannot make a body of {[*files, *(str(path) for path, _ in drawn)]}")
+        body = int(
+            pybullet.createMultiBody(
+                mass,
+                shape,
+                visual,
+                pose[0],
+                pose[1],
+                baseInertialFramePosition=inertial[0],
+                baseInertialFrameOrientation=inertial[1],
+                physicsClientId=self._client,
+            )
+        )
+        pybullet.changeDynamics(body, -1, localInertiaDiagonal=list(inertia), physicsClientId=self._client)
+        return body
+
     def add_picture(self, corners: NDArray[np.float64], triangles: NDArray[np.int64], rgb: Rgb) -> None:
         """Add faces that are only drawn: corners (n, 3) [m] in the world, triangles (m, 3)."""
         self._add_body(0, -1, self._mesh_visual(corners, triangles, rgb), (0, 0, 0))
@@ -123,8 +188,8 @@ class Physics:
     def _add_body(self, mass: float, shape: int, visual: int, position: Vector) -> int:
         return int(pybullet.createMultiBody(mass, shape, visual, list(position), physicsClientId=self._client))
 
-    def add_robot(self, urdf: Path, pose: RawPose) -> int:
-        """Load a URDF with its base fixed. Returns the body.
+    def add_robot(self, urdf: Path, pose: RawPose, *, fixed: bool = True) -> int:
+        """Load a URDF, its base fixed or free to move. Returns the body.
 
         Raises:
             TwinError: PyBullet cannot load it.
@@ -135,18 +200,36 @@ class Physics:
                     str(urdf),
                     pose[0],
                     pose[1],
-                    useFixedBase=True,
-                    flags=pybullet.URDF_USE_INERTIA_FROM_FILE,
+                    useFixedBase=fixed,
+                    flags=pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_IMPLICIT_CYLINDER,
                     physicsClientId=self._client,
                 )
             )
         except pybullet.error as error:
             raise TwinError(f"{urdf}: PyBullet cannot load it: {error}") from error
 
-    def set_friction(self, body: int, link: int, lateral: float, *, anchored: bool = False) -> None:
-        """Set a link's friction coefficient; `anchored` makes static friction hold a place, not only a speed of 0."""
+    def set_friction(
+        self,
+        body: int,
+        link: int,
+        lateral: float,
+        *,
+        spinning: float = 0.0,
+        rolling: float = 0.0,
+        anchored: bool = False,
+    ) -> None:
+        """Set a link's friction: coefficient, and arms of the torque against spinning and rolling [m].
+
+        `anchored` makes static friction hold a place, not only a speed of 0.
+        """
         pybullet.changeDynamics(
-            body, link, lateralFriction=lateral, frictionAnchor=anchored, physicsClientId=self._client
+            body,
+            link,
+            lateralFriction=lateral,
+            spinningFriction=spinning,
+            rollingFriction=rolling,
+            frictionAnchor=anchored,
+            physicsClientId=self._client,
         )
 
     # Sleep: bodies that rest are left out of the solver until something that moves touches them
@@ -195,8 +278,52 @@ class Physics:
         """Place a joint at rest [rad or m]; only before a world starts."""
         pybullet.resetJointState(body, joint, position, 0.0, physicsClientId=self._client)
 
-    def gear(self, body: int, first: int, second: int, force: float) -> None:
-        """Couple two links' joints so that their positions stay equal."""
+    def links_behind(self, body: int, joint: int) -> list[int]:
+        """The link that a joint carries and all links behind it."""
+        found = [joint]
+        for other in range(joint + 1, pybullet.getNumJoints(body, physicsClientId=self._client)):
+            if int(self._joint_info(body, other)[16]) in found:
+                found.append(other)
+        return found
+
+    def moving_joint_of(self, body: int, link: int) -> int:
+        """The movable joint nearest to a link on the way to the base."""
+        while link >= 0 and int(self._joint_info(body, link)[2]) == pybullet.JOINT_FIXED:
+            link = int(self._joint_info(body, link)[16])
+        return link
+
+    def brake(self, body: int, force: float) -> int:
+        """Fix a body's base where it is, with a limited force [N, Nm]. Returns the constraint."""
+        position, orientation = pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client)
+        brake = pybullet.createConstraint(
+            body,
+            -1,
+            -1,
+            -1,
+            pybullet.JOINT_FIXED,
+            [0, 0, 0],
+            [0, 0, 0],
+            position,
+            [0, 0, 0, 1],
+            orientation,
+            physicsClientId=self._client,
+        )
+        pybullet.changeConstraint(brake, maxForce=force, physicsClientId=self._client)
+        return int(brake)
+
+    def release(self, constraint: int) -> None:
+        """Take a constraint away."""
+        pybullet.removeConstraint(constraint, physicsClientId=self._client)
+
+    def base_velocity(self, body: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Linear [m/s] and angular [rad/s] velocity of a body's base in the world."""
+        velocity: tuple[tuple[float, ...], tuple[float, ...]] = pybullet.getBaseVelocity(
+            body, physicsClientId=self._client
+        )
+        return velocity
+
+    def gear(self, body: int, first: int, second: int, ratio: float, force: float) -> None:
+        """Couple two joints: the velocity of the first plus `ratio` times that of the second stays 0."""
         gear = pybullet.createConstraint(
             body,
             first,
@@ -209,7 +336,7 @@ class Physics:
             physicsClientId=self._client,
         )
         pybullet.changeConstraint(
-            gear, gearRatio=-1, maxForce=force, erp=0.5, relativePositionTarget=0, physicsClientId=self._client
+            gear, gearRatio=ratio, maxForce=force, erp=0.5, relativePositionTarget=0, physicsClientId=self._client
         )
 
     def drive(self, body: int, joints: list[int], targets: list[float], forces: list[float]) -> None:
@@ -240,15 +367,47 @@ class Physics:
             physicsClientId=self._client,
         )
 
-    def joint_states(self, body: int, joints: list[int]) -> list[tuple[float, float]]:
-        """Position and velocity of each joint."""
-        return [state[:2] for state in pybullet.getJointStates(body, joints, physicsClientId=self._client)]
+    def spin(self, body: int, joints: list[int], speeds: list[float], force: float) -> None:
+        """Drive joints at speeds [rad/s] with a limited torque [Nm]."""
+        pybullet.setJointMotorControlArray(
+            body,
+            joints,
+            pybullet.VELOCITY_CONTROL,
+            targetVelocities=speeds,
+            forces=[force] * len(joints),
+            physicsClientId=self._client,
+        )
+
+    def sense_force(self, body: int, joint: int) -> None:
+        """Measure the force in a joint from now on."""
+        pybullet.enableJointForceTorqueSensor(body, joint, True, physicsClientId=self._client)
+
+    def joint_wrench(self, body: int, joint: int) -> tuple[NDArray[np.float64], tuple[float, float, float, float]]:
+        """Force [N] and torque [Nm] in a joint in the last step, (6,), and its axes in the world as a quaternion xyzw.
+
+        The axes are those of the carried link's inertia.
+        """
+        wrench = np.array(pybullet.getJointState(body, joint, physicsClientId=self._client)[2])
+        return wrench, pybullet.getLinkState(body, joint, physicsClientId=self._client)[1]
+
+    def joint_states(self, body: int, joints: list[int]) -> list[tuple[float, float, float]]:
+        """Position, velocity and the motor's effort of each joint."""
+        states = pybullet.getJointStates(body, joints, physicsClientId=self._client)
+        return [(position, velocity, effort) for position, velocity, _, effort in states]
 
     # Poses and contacts
 
     def base_pose(self, body: int) -> RawPose:
         """Pose of a body's centre of mass in the world."""
         pose: RawPose = pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client)
+        return pose
+
+    def base_frame(self, body: int) -> RawPose:
+        """Pose of a body's base frame (that of the URDF) in the world."""
+        position, orientation = pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client)
+        local = pybullet.getDynamicsInfo(body, -1, physicsClientId=self._client)
+        inverse = pybullet.invertTransform(local[3], local[4], physicsClientId=self._client)
+        pose: RawPose = pybullet.multiplyTransforms(position, orientation, *inverse, physicsClientId=self._client)
         return pose
 
     def link_pose(self, body: int, link: int) -> RawPose:
@@ -261,9 +420,10 @@ class Physics:
         points = pybullet.getContactPoints(bodyA=body, linkIndexA=link, physicsClientId=self._client)
         return {point[2] for point in points if point[8] <= within}
 
-    def touching_anywhere(self, body: int) -> set[int]:
-        """Bodies near any link of a body, as of the last step."""
-        return {point[2] for point in pybullet.getContactPoints(bodyA=body, physicsClientId=self._client)}
+    def touching_anywhere(self, body: int, within: float = math.inf) -> set[int]:
+        """Bodies near any link of a body, or within a distance [m] of one, as of the last step."""
+        points = pybullet.getContactPoints(bodyA=body, physicsClientId=self._client)
+        return {point[2] for point in points if point[8] <= within}
 
     # Time
 

@@ -1,5 +1,7 @@
 """From what a user calls a scene to its specification."""
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -8,17 +10,24 @@ from robots.validation import read_toml
 
 from .board_scene import random_board
 from .errors import SceneError
+from .ordering_scene import random_ordering
 from .scene_spec import SceneSpec
+from .tabletop_scene import random_tabletop
 
-SCENES = ("board",)
-"""Names of the scenes that are made from a seed."""
+SCENES: dict[str, Callable[..., SceneSpec]] = {
+    "board": random_board,
+    "board-all": partial(random_board, all_looks=True),
+    "tabletop": random_tabletop,
+    "ordering": random_ordering,
+}
+"""The scenes that are made from a seed, by name."""
 
 
 def resolve_scene(scene: str | Path | SceneSpec, seed: int = 0) -> SceneSpec:
     """Give the specification of a scene.
 
     Args:
-        scene: `"board"`, the path of a scene TOML, or a specification, which is given back.
+        scene: A name in `SCENES`, the path of a scene TOML, or a specification, which is given back.
         seed: Decides a random scene.
 
     Raises:
@@ -26,8 +35,8 @@ def resolve_scene(scene: str | Path | SceneSpec, seed: int = 0) -> SceneSpec:
     """
     if isinstance(scene, SceneSpec):
         return scene
-    if scene == "board":
-        return random_board(np.random.default_rng(seed), seed=seed)
+    if isinstance(scene, str) and scene in SCENES:
+        return SCENES[scene](np.random.default_rng(seed), seed=seed)
     path = Path(scene)
     if not path.is_file():
         raise SceneError(

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from robots.pose import FloatArray, read_only
-from twin.board import BLOCK
+from twin.board import ALL_SHAPES, BLOCK
+from twin.objects import board_model
 
 DATA_FILE = "board_fpfh.json"
 SAMPLES = 2000
@@ -56,7 +57,10 @@ def compute_descriptor(vertices: FloatArray, triangles: np.ndarray[tuple[int, in
 
 
 def block_mesh(shape: str) -> tuple[FloatArray, np.ndarray[tuple[int, int], np.dtype[np.int64]]]:
-    """Vertices [m] and triangles of a block about its centre: a cube, or a prism with its ridge along x."""
+    """Vertices [m] and triangles of a block about its centre: its faces, the ridge of a prism along x."""
+    if shape not in ("cube", "prism"):
+        faces = board_model(shape, "red").visuals[0]
+        return faces.vertices, faces.faces
     half = 0.5 * BLOCK
     low = [(x * half, y * half, -half) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     if shape == "cube":
@@ -72,7 +76,7 @@ def block_mesh(shape: str) -> tuple[FloatArray, np.ndarray[tuple[int, int], np.d
 
 def make_data() -> str:
     """The text of the data file."""
-    fpfh = {shape: [round(float(b), 6) for b in compute_descriptor(*block_mesh(shape))] for shape in ("cube", "prism")}
+    fpfh = {shape: [round(float(b), 6) for b in compute_descriptor(*block_mesh(shape))] for shape in ALL_SHAPES}
     return json.dumps({"samples": SAMPLES, "radius": NEIGHBOURHOOD, "seed": SEED, "fpfh": fpfh}, indent=1) + "\n"
 
 

@@ -232,7 +232,7 @@ def test_do_complains_about_its_arguments(knowledge_file: str, scene: Path, tmp_
     complains(run("do", knowledge_file, "take it", "--scene", "moon"), "moon")
     complains(run("do", knowledge_file, "take it", "--robot", "r2d2"), "r2d2")
     complains(run("do", knowledge_file, "take it", "--scene", scene, "--picture", tmp_path / "x.bmp"), "x.bmp")
-    scene.write_text(SCENE.replace('"cube"', '"sphere"', 1))
+    scene.write_text(SCENE.replace('"cube"', '"ball"', 1))
     complains(run("do", knowledge_file, "take it", "--scene", scene), "scene.toml", "shape")
 
 

@@ -1,10 +1,12 @@
+from itertools import combinations
+
 import numpy as np
 import pytest
 
 from learning.perception.descriptors import block_mesh, board_descriptors, compute_descriptor
-from twin.board import BLOCK
+from twin.board import ALL_SHAPES, BLOCK
 
-SHAPES = ("cube", "prism")
+SHAPES = ALL_SHAPES
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -22,12 +24,13 @@ def test_descriptors_are_histograms(shape: str) -> None:
     assert not bins.flags.writeable
 
 
-def test_shapes_differ_by_more_than_their_noise() -> None:
-    cube, prism = (board_descriptors()[shape] for shape in SHAPES)
-    noise = 0.05 * np.maximum(cube, prism)
+@pytest.mark.parametrize(("one", "other"), list(combinations(SHAPES, 2)))
+def test_shapes_differ_by_more_than_their_noise(one: str, other: str) -> None:
+    first, second = board_descriptors()[one], board_descriptors()[other]
+    noise = 0.05 * np.maximum(first, second)
     seen = noise > 0
     # In units of the noise of one frame; eight frames are averaged.
-    assert np.sqrt(np.sum(((cube - prism)[seen] / noise[seen]) ** 2)) > 10
+    assert np.sqrt(np.sum(((first - second)[seen] / noise[seen]) ** 2)) > 10
 
 
 @pytest.mark.parametrize(("shape", "volume"), [("cube", BLOCK**3), ("prism", BLOCK**3 / 2)])

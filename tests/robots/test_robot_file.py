@@ -9,27 +9,27 @@ import pytest
 from robots import RobotError, load_robot
 
 WRONG = [
-    ("jerk = [180.0, 180.0, 270.0]\n", "", "arm.jerk: missing"),
-    ("max_opening = 0.048", "max_opening = -1", "gripper.max_opening: Input should be greater than 0; got -1"),
-    ("max_opening = 0.048", "max_opening = 0.2", "gripper.max_opening: finger_left opens to 0.024 m, so at most 0.048"),
-    ("max_opening = 0.048", 'max_opening = "wide"', "gripper.max_opening: Input should be a valid number"),
-    ("[gripper]", "[gripper]\ncolour = 1", "gripper.colour: unknown key; allowed keys here are joints, max_opening,"),
-    ("[gripper]", "[griper]", "gripper: missing"),
-    ('"elbow"]', '"knee"]', "arm.joints: no movable joint 'knee' in three_dof.urdf; it has base_yaw, shoulder, elbow"),
-    ('"elbow"]', '"wrist_elbow"]', "arm.joints: 'wrist_elbow' mimics another joint and cannot be driven"),
-    ('"elbow"]', '"shoulder"]', "arm: joints must differ from each other, got base_yaw, shoulder, shoulder"),
-    ("velocity = [2.5, 2.5, 3.5]", "velocity = [2.5, 2.5]", "arm: velocity must hold one number per joint (3), got 2"),
-    ("velocity = [2.5, 2.5, 3.5]", "velocity = [9.5, 2.5, 3.5]", "arm.velocity: base_yaw may be at most 2.5 rad/s"),
-    ("home = [0.0,", "home = [7.0,", "arm.home: base_yaw must be in -1.6..1.6 rad, got 7.0"),
-    ("home = [0.0,", "home = [nan,", "arm.home[0]: Input should be a finite number; got nan"),
+    ("jerk = [180.0, 180.0, 270.0]\n", "", "arms[0].jerk: missing"),
+    ("max_opening = 0.048", "max_opening = -1", "arms[0].gripper.max_opening: Input should be greater than 0; got -1"),
+    ("max_opening = 0.048", "max_opening = 0.2", "arms[0].gripper.max_opening: finger_left opens to 0.024 m, so at most 0.048"),
+    ("max_opening = 0.048", 'max_opening = "wide"', "arms[0].gripper.max_opening: Input should be a valid number"),
+    ("[arms.gripper]", "[arms.gripper]\ncolour = 1", "arms[0].gripper.colour: unknown key; allowed keys here are joints,"),
+    ("[arms.gripper]", "[arms.griper]", "arms[0].gripper: missing"),
+    ('"elbow"]', '"knee"]', "arms[0].joints: no movable joint 'knee' in three_dof.urdf; it has base_yaw, shoulder, elbow"),
+    ('"elbow"]', '"wrist_elbow"]', "arms[0].joints: 'wrist_elbow' mimics another joint and cannot be driven"),
+    ('"elbow"]', '"shoulder"]', "arms[0]: joints must differ from each other, got base_yaw, shoulder, shoulder"),
+    ("velocity = [2.5, 2.5, 3.5]", "velocity = [2.5, 2.5]", "arms[0]: velocity must hold one number per joint (3), got 2"),
+    ("velocity = [2.5, 2.5, 3.5]", "velocity = [9.5, 2.5, 3.5]", "arms[0].velocity: base_yaw may be at most 2.5 rad/s"),
+    ("home = [0.0,", "home = [7.0,", "arms[0].home: base_yaw must be in -1.6..1.6 rad, got 7.0"),
+    ("home = [0.0,", "home = [nan,", "arms[0].home[0]: Input should be a finite number; got nan"),
     (
         'tool_frame = "tool"',
         'tool_frame = "tip"',
-        "arm.tool_frame: no link 'tip' in three_dof.urdf; it has base, turret",
+        "arms[0].tool_frame: no link 'tip' in three_dof.urdf; it has base, turret",
     ),
     ("[0.0, 0.0, 0.0, 1.0]", "[0.0, 0.0, 0.0, 2.0]", "base: orientation_xyzw must be a unit quaternion"),
     ('urdf = "three_dof.urdf"', 'urdf = "none.urdf"', "none.urdf: cannot be read: No such file"),
-    ("[arm]", "[arm", "not valid TOML"),
+    ("[[arms]]", "[[arms", "not valid TOML"),
 ]
 
 

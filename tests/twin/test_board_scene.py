@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twin import SceneSpec, random_board
-from twin.board import CELLS, COLOURS_RGB, cell_centre, nearest_cell
+from twin.board import ALL_COLOURS_RGB, ALL_SHAPES, CELLS, COLOURS_RGB, cell_centre, nearest_cell
 
 
 def cells(spec: SceneSpec) -> dict[tuple[int, int, int], str]:
@@ -43,3 +43,14 @@ def test_scenes_are_varied_and_most_looks_are_unique() -> None:
         total += len(spec.objects)
     assert unique > 0.55 * total
     assert 0.1 * total < stacked < 0.5 * total
+
+
+def test_all_looks_add_spheres_cylinders_and_black() -> None:
+    specs = [random_board(np.random.default_rng(seed), all_looks=True) for seed in range(60)]
+    assert {each.shape for spec in specs for each in spec.objects} == set(ALL_SHAPES)
+    assert {each.colour for spec in specs for each in spec.objects} == set(ALL_COLOURS_RGB)
+    bases = set()
+    for spec in specs:
+        taken = cells(spec)
+        bases |= {taken[x, y, z - 1] for x, y, z in taken if z > 0}
+    assert bases == {"cube", "cylinder"}

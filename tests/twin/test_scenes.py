@@ -39,10 +39,14 @@ def test_a_toml_file_is_read(tmp_path: Path) -> None:
     ("old", "new", "message"),
     [
         ('colour = "white"', 'colour = "gold"', "objects[1].colour: unknown colour; use one of blue, "),
-        ('shape = "prism"', 'shape = "ball"', "objects[1].shape: Input should be 'cube' or 'prism'; got 'ball'"),
+        (
+            'shape = "prism"',
+            'shape = "ball"',
+            "objects[1].shape: unknown shape; use one of cube, prism, sphere, cylinder; got 'ball'",
+        ),
         ("id = 7", "id = 1", "objects: id 1 is used more than once"),
         ("id = 7", "", "objects[1].id: missing"),
-        ('name = "two"', 'nome = "two"', "nome: unknown key; allowed keys here are name, robot, objects,"),
+        ('name = "two"', 'nome = "two"', "nome: unknown key; allowed keys here are name, kind, robot, objects,"),
         ('name = "two"', "held = 3", "held: 3 is not the id of an object; the scene's ids: 1, 7"),
         ("[[objects]]", "[[objects", "not valid TOML"),
     ],
@@ -57,7 +61,10 @@ def test_wrong_files_are_named(tmp_path: Path, old: str, new: str, message: str)
 
 @pytest.mark.parametrize("scene", ["kitchen", "", Path("no/such.toml")])
 def test_unknown_scenes_are_refused(scene: str | Path) -> None:
-    with pytest.raises(SceneError, match="is unknown: use 'board' or the path of a scene's TOML file"):
+    with pytest.raises(
+        SceneError,
+        match="is unknown: use 'board', 'board-all', 'tabletop', 'ordering' or the path of a scene's TOML file",
+    ):
         resolve_scene(scene)
 
 

@@ -1,0 +1,301 @@
+"""Distances of a robot to itself and to things around it (coal, through Pinocchio): the geometry that planners ask."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, Literal
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+from .errors import RobotError
+from .kinematics import configuration, rotation_matrix, whole_model
+from .model import RobotModel
+from .pose import FloatArray, Pose, read_only
+
+
+FLOOR = "floor"
+"""Name of the obstacle on which wheels roll."""
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """A convex thing in the world.
+
+    Attributes:
+        name: What it is called in answers.
+        kind: `box` with full side lengths, `sphere` with its radius, `cylinder` with its radius and its length along
+            z, or `hull`.
+        size: Numbers of the kind [m]; empty for a hull.
+        pose_obstacle_in_world: Where it is.
+        corners: Corners of a hull, (k, 3) [m].
+    """
+
+    name: str
+    kind: Literal["box", "sphere", "cylinder", "hull"]
+    size: tuple[float, ...]
+    pose_obstacle_in_world: Pose
+    corners: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        """Freeze the corners.
+
+        Raises:
+            RobotError: The number of sizes is not the kind's, or one is not positive.
+        """
+        if self.corners is not None:
+            object.__setattr__(self, "corners", read_only(self.corners))
+        wanted = {"box": 3, "sphere": 1, "cylinder": 2, "hull": 0}
+        if self.kind not in wanted:
+            raise RobotError(f"obstacle {self.name!r}: kind must be one of {', '.join(wanted)}, got {self.kind!r}")
+        if len(self.size) != wanted[self.kind] or not all(np.isfinite(self.size)) or min(self.size, default=1.0) <= 0:
+            raise RobotError(
+                f"obstacle {self.name!r}: a {self.kind} needs {wanted[self.kind]} positive sizes [m], got {self.size}"
+            )
+        if self.kind == "hull" and (self.corners is None or self.corners.ndim != 2 or len(self.corners) < 4):
+            raise RobotError(f"obstacle {self.name!r}: a hull needs at least four corners (k, 3) [m]")
+
+
+@dataclass(frozen=True, slots=True)
+class Nearest:
+    """The nearest pair.
+
+    Attributes:
+        distance: Between the two [m]; negative when they overlap.
+        first: Link of the robot.
+        second: Another link, or an obstacle's name.
+    """
+
+    distance: float
+    first: str
+    second: str
+
+
+class CollisionModel:
+    """All links of a robot with the things around it and what it holds. Not safe to share between threads.
+
+    Left out are pairs that cannot collide or may touch: neighbours in the tree, the fingers of one gripper, links that
+    overlap in the home posture or in nearly every other (they are built so), and the pairs that the robot's file names.
+
+    Attributes:
+        robot: The robot, where it stands.
+        obstacles: Things around it.
+        held: Things that move with a tool, by arm; their poses are in the tool's frame.
+    """
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        obstacles: Sequence[Obstacle] = (),
+        held: Mapping[str, Sequence[Obstacle]] | None = None,
+        *,
+        may_touch: Sequence[tuple[str, str]] = (),
+        moving: Sequence[str] | None = None,
+    ) -> None:
+        """Build the geometry.
+
+        Args:
+            robot: The robot, where it stands.
+            obstacles: Things around it.
+            held: Things in the grippers, by arm; `pose_obstacle_in_world` is then the pose in the tool frame.
+            may_touch: Pairs of a link's or a held thing's name and an obstacle's name whose contact is intended.
+            moving: Arms that will move; pairs that stand still while only these do are left out. None takes all.
+        """
+        self.robot = robot
+        self.obstacles = tuple(obstacles)
+        self.held = {arm: tuple(things) for arm, things in (held or {}).items()}
+        self._model = whole_model(robot.urdf_path)
+        self._data = self._model.createData()
+        self._geometry, own_pairs = _robot_geometry(robot)
+        own = self._geometry.ngeoms
+        base = robot.pose_base_in_world
+        to_base = pin.SE3(rotation_matrix(base.orientation_xyzw), np.array(base.position)).inverse()
+        carried = [
+            self._add(thing, robot.arms[arm].tool_frame) for arm, things in self.held.items() for thing in things
+        ]
+        around = [self._add(thing, None, to_base) for thing in self.obstacles]
+        names = [_name(self._model, each) for each in self._geometry.geometryObjects]
+        allowed = {frozenset(pair) for pair in may_touch} | robot.may_touch
+        if robot.drive is not None:
+            allowed |= {frozenset((link, FLOOR)) for link in robot.drive.on_floor}
+        pairs = list(own_pairs)
+        hands = {arm: self._hand(arm) for arm in self.held}
+        for index in carried:
+            hand = next(
+                hands[arm] for arm, things in self.held.items() if names[index] in {each.name for each in things}
+            )
+            pairs += [(link, index) for link in range(own) if names[link] not in hand]
+        for thing in around:
+            pairs += [
+                (mover, thing)
+                for mover in (*range(own), *carried)
+                # What the base is bolted to is not hit by it.
+                if frozenset((names[mover], names[thing])) not in allowed and self._moves(mover)
+            ]
+        self._geometry.removeAllCollisionPairs()
+        still = set() if moving is None else self._still(moving)
+        for first, second in pairs:
+            if first in still and second in still:
+                continue
+            if frozenset((names[first], names[second])) not in allowed:
+                self._geometry.addCollisionPair(pin.CollisionPair(first, second))
+        self._names = names
+        self._geometry_data = pin.GeometryData(self._geometry)
+        self._margin = 0.0
+
+    def free(self, q: FloatArray, openings: Mapping[str, float] | None = None, margin: float = 0.0) -> bool:
+        """Whether nothing is nearer than a margin [m] to what it may not touch.
+
+        Args:
+            q: Driven positions of all arms, (n,) [rad].
+            openings: Gap of the fingers by arm [m]; open where not given.
+            margin: Smallest distance allowed [m].
+        """
+        if margin != self._margin:
+            for request in self._geometry_data.collisionRequests:
+                request.security_margin = margin
+            self._margin = margin
+        return not pin.computeCollisions(
+            self._model, self._data, self._geometry, self._geometry_data, self._configuration(q, openings), True
+        )
+
+    def nearest(self, q: FloatArray, openings: Mapping[str, float] | None = None) -> Nearest:
+        """The nearest pair of what may not touch; see `free`. Distances below 0 are depths of penetration."""
+        if len(self._geometry.collisionPairs) == 0:
+            return Nearest(float("inf"), "", "")
+        index = pin.computeDistances(
+            self._model, self._data, self._geometry, self._geometry_data, self._configuration(q, openings)
+        )
+        pair = self._geometry.collisionPairs[index]
+        distance = float(self._geometry_data.distanceResults[index].min_distance)
+        return Nearest(distance, self._names[pair.first], self._names[pair.second])
+
+    def _configuration(self, q: FloatArray, openings: Mapping[str, float] | None) -> FloatArray:
+        return configuration(self._model, self.robot.expand(q, openings or {}))
+
+    def _add(self, thing: Obstacle, frame: str | None, to_base: Any = None) -> int:
+        """Add a thing that is fixed to a frame, or to the world; returns its number."""
+        placement = _placement(thing.pose_obstacle_in_world)
+        joint = parent = 0
+        if frame is None:
+            placement = to_base * placement
+        else:
+            parent = self._model.getFrameId(frame)
+            joint = self._model.frames[parent].parentJoint
+            placement = self._model.frames[parent].placement * placement
+        return int(
+            self._geometry.addGeometryObject(
+                pin.GeometryObject(f"thing:{thing.name}", joint, parent, placement, _shape(thing))
+            )
+        )
+
+    def _moves(self, index: int) -> bool:
+        return int(self._geometry.geometryObjects[index].parentJoint) != 0 or self.robot.drive is not None
+
+    def _still(self, moving: Sequence[str]) -> set[int]:
+        """Geometries that do not move when only some arms do."""
+        swept: set[int] = set()
+        for arm in moving:
+            first = self._model.getJointId(self.robot.arms[arm].joint_names[0])
+            swept |= {int(joint) for joint in self._model.subtrees[first]}
+        return {
+            index for index, each in enumerate(self._geometry.geometryObjects) if int(each.parentJoint) not in swept
+        }
+
+    def _hand(self, arm: str) -> set[str]:
+        """Links of an arm's hand: what the last joint carries, which may touch what is held."""
+        return {_name(self._model, each) for each in _hand_geometries(self._model, self._geometry, self.robot, arm)}
+
+
+def _name(model: Any, geometry: Any) -> str:
+    """A thing's name, or that of the link to which a geometry belongs."""
+    if str(geometry.name).startswith("thing:"):
+        return str(geometry.name)[len("thing:") :]
+    return str(model.frames[geometry.parentFrame].name)
+
+
+def _hand_geometries(model: Any, geometry: Any, robot: RobotModel, arm: str) -> list[Any]:
+    """Geometries carried by the last joint of an arm or by joints behind it."""
+    last = model.getJointId(robot.arms[arm].joint_names[-1])
+    if robot.arms[arm].mimic:
+        last = model.frames[model.getFrameId(robot.arms[arm].tool_frame)].parentJoint
+    behind = {int(joint) for joint in model.subtrees[last]}
+    return [each for each in geometry.geometryObjects if int(each.parentJoint) in behind]
+
+
+def _robot_geometry(robot: RobotModel) -> tuple[Any, list[tuple[int, int]]]:
+    """A copy of a robot's convex geometry that can be added to, and the pairs that may not touch."""
+    key = str(robot.urdf_path), robot.may_touch
+    if key not in _MADE:
+        _MADE[key] = _make_geometry(robot)
+    geometry, pairs = _MADE[key]
+    return geometry.copy(), pairs
+
+
+_MADE: dict[tuple[str, frozenset[frozenset[str]]], tuple[Any, list[tuple[int, int]]]] = {}
+_TRIED = 60
+"""Postures in which pairs are tried; one that touches in nearly all of them is built so."""
+
+
+def _make_geometry(robot: RobotModel) -> tuple[Any, list[tuple[int, int]]]:
+    model = whole_model(robot.urdf_path)
+    geometry = pin.buildGeomFromUrdf(model, str(robot.urdf_path), pin.GeometryType.COLLISION)
+    for each in geometry.geometryObjects:
+        each.geometry = _convex(each.geometry)
+        each.meshScale = np.ones(3)
+    hands = [{each.name for each in _hand_geometries(model, geometry, robot, arm)} for arm in robot.arms]
+    parents = list(model.parents)
+    pairs = []
+    for first, second in combinations(range(geometry.ngeoms), 2):
+        one, other = geometry.geometryObjects[first], geometry.geometryObjects[second]
+        a, b = int(one.parentJoint), int(other.parentJoint)
+        neighbours = a == b or parents[a] == b or parents[b] == a
+        same_hand = any(one.name in hand and other.name in hand for hand in hands)
+        if not neighbours and not same_hand:
+            pairs.append((first, second))
+    return geometry, _apart(robot, model, geometry, pairs)
+
+
+def _apart(robot: RobotModel, model: Any, geometry: Any, pairs: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """The pairs that are apart at home and not always together elsewhere."""
+    for first, second in pairs:
+        geometry.addCollisionPair(pin.CollisionPair(first, second))
+    data, geometry_data = model.createData(), pin.GeometryData(geometry)
+    rng = np.random.default_rng(0)  # fixed: which pairs count is a property of the robot
+    lower, upper = np.maximum(robot.lower, -np.pi), np.minimum(robot.upper, np.pi)
+    touching = np.zeros(len(pairs))
+    for number in range(_TRIED + 1):
+        q = robot.home if number == 0 else rng.uniform(lower, upper)
+        pin.computeCollisions(model, data, geometry, geometry_data, configuration(model, robot.expand(q, {})), False)
+        hits = np.array([result.isCollision() for result in geometry_data.collisionResults])
+        touching += hits * (_TRIED if number == 0 else 1)
+    geometry.removeAllCollisionPairs()
+    return [pair for pair, count in zip(pairs, touching, strict=True) if count < 0.95 * _TRIED]
+
+
+def _convex(geometry: Any) -> Any:
+    """A mesh's convex hull, as PyBullet takes it too; primitives as they are."""
+    if isinstance(geometry, coal.BVHModelBase):
+        geometry.buildConvexHull(True, "Qt")
+        return geometry.convex
+    return geometry
+
+
+def _placement(pose: Pose) -> Any:
+    return pin.SE3(rotation_matrix(pose.orientation_xyzw), np.array(pose.position))
+
+
+def _shape(thing: Obstacle) -> Any:
+    """The shape of an obstacle for coal."""
+    if thing.kind == "box":
+        return coal.Box(*thing.size)
+    if thing.kind == "sphere":
+        return coal.Sphere(*thing.size)
+    if thing.kind == "cylinder":
+        return coal.Cylinder(*thing.size)
+    points = coal.StdVec_Vec3s()
+    assert thing.corners is not None  # checked by Obstacle
+    for corner in thing.corners:
+        points.append(np.array(corner))
+    return coal.Convex.convexHull(points, False, "")

@@ -1,0 +1,140 @@
+"""The URDF as it is used: meshes found and decimated, fingers mounted as `robot.toml` says.
+
+PyBullet reads neither `package://` in a file that was moved nor 400,000 triangles quickly. What is prepared lies in the
+user's cache and is made once; a URDF that needs nothing is used where it is.
+"""
+
+import atexit
+import hashlib
+import os
+import shutil
+import tempfile
+import xml.etree.ElementTree as ElementTree
+from copy import deepcopy
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from .errors import RobotError
+from .hulls import convex_pieces
+from .kinematics import rpy_matrix
+from .meshes import decimated, resolve
+from .robot_file import RobotFile
+
+
+def prepare_urdf(folder: Path, spec: RobotFile) -> Path:
+    """Give the URDF to use for a robot file.
+
+    Raises:
+        RobotError: The URDF or one of its meshes is missing; names file, link and mesh.
+    """
+    named = folder / spec.urdf
+    source = resolve(spec.urdf, folder / "robot.toml", "urdf") if spec.urdf.startswith("package://") else named
+    try:
+        tree = ElementTree.parse(source)
+    except OSError as error:
+        raise RobotError(f"{source}: cannot be read: {error.strerror}") from error
+    except ElementTree.ParseError as error:
+        raise RobotError(f"{source}: not valid XML: {error}") from error
+    root = tree.getroot()
+    # Every one is asked: `or` would stop at the first that changed something.
+    changed = [_find_meshes(root, source), _mount_fingers(root, spec)]
+    if not any(changed):
+        return source
+    for link in root.findall("link"):
+        if link.find("inertial") is None:
+            # PyBullet would give it 1 kg.
+            inertial = ElementTree.SubElement(link, "inertial")
+            ElementTree.SubElement(inertial, "mass", value="1e-6")
+            moments = {"ixx": "1e-9", "iyy": "1e-9", "izz": "1e-9", "ixy": "0", "ixz": "0", "iyz": "0"}
+            ElementTree.SubElement(inertial, "inertia", moments)
+    text = ElementTree.tostring(root, encoding="unicode")
+    name = f"{spec.name}-{hashlib.sha256(text.encode()).hexdigest()[:16]}.urdf"
+    for cache in (_user_cache, _own_cache):
+        try:
+            return _written(text, cache() / name)
+        except OSError:
+            continue
+    raise RobotError(f"{source}: no folder can be written to keep the prepared URDF in: set XDG_CACHE_HOME to one")
+
+
+def _user_cache() -> Path:
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "showtell" / "robots"
+
+
+@lru_cache(maxsize=1)
+def _own_cache() -> Path:
+    """A folder of this process, deleted at its end, for where the user's cache cannot be written."""
+    folder = Path(tempfile.mkdtemp(prefix="showtell-robots-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def _written(text: str, path: Path) -> Path:
+    """Write a file that appears whole, unless it is there."""
+    if not path.is_file():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".urdf")
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(temporary, path)
+    return path
+
+
+def _find_meshes(root: ElementTree.Element, source: Path) -> bool:
+    """Point every drawn mesh at its decimated copy and put convex hulls in the place of those that are collided with.
+
+    Returns whether there is any.
+    """
+    found = False
+    for link in root.findall("link"):
+        name = link.get("name", "")
+        for kind in ("visual", "collision"):
+            for element in link.findall(kind):
+                mesh = element.find("geometry/mesh")
+                if mesh is None:
+                    continue
+                found = True
+                file = resolve(mesh.get("filename", ""), source, name)
+                if kind == "visual":
+                    mesh.set("filename", str(decimated(file)))
+                    continue
+                for piece in convex_pieces(file):
+                    mesh.set("filename", str(piece))
+                    link.append(deepcopy(element))
+                link.remove(element)
+    return found
+
+
+def _mount_fingers(root: ElementTree.Element, spec: RobotFile) -> bool:
+    """Shift each finger's carriage outwards. Returns whether any is."""
+    joints = {joint.get("name"): joint for joint in root.findall("joint")}
+    shifted = False
+    for arm in spec.arms:
+        gripper = arm.gripper
+        if gripper.mounting == 0.0:
+            continue
+        closed = gripper.closed or (0.0, 0.0)
+        opened = gripper.open or (1.0, 1.0)
+        for index, name in enumerate(gripper.joints):
+            joint = joints.get(name)
+            if joint is None:
+                continue  # told by the check against the URDF
+            if joint.get("type") != "prismatic":
+                raise RobotError(f"{spec.urdf}: joint {name}: only fingers that slide can be mounted elsewhere")
+            origin = joint.find("origin")
+            if origin is None:
+                origin = ElementTree.SubElement(joint, "origin")
+            axis = joint.find("axis")
+            along = np.array(_numbers("1 0 0" if axis is None else axis.get("xyz", "1 0 0")))
+            outwards = np.sign(opened[index] - closed[index]) * along / np.linalg.norm(along)
+            turned = rpy_matrix(_numbers(origin.get("rpy", "0 0 0"))) @ outwards
+            place = np.array(_numbers(origin.get("xyz", "0 0 0"))) + gripper.mounting * turned
+            origin.set("xyz", " ".join(f"{value:.9g}" for value in place))
+            shifted = True
+    return shifted
+
+
+def _numbers(text: str) -> list[float]:
+    return [float(part) for part in text.split()]
