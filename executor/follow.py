@@ -1,12 +1,18 @@
 """Playing a joint trajectory on the twin."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from robots.pose import FloatArray
-from robots.trajectories import Trajectory
+from robots.trajectories import BaseTrajectory, Trajectory
 from twin import JointCommand, World
+
+ALONG, BESIDE, TURNING = 2.0, 6.0, 3.0
+"""Gains of the base's correction: per second along the way, per square metre beside it, per second of turning."""
+SETTLE = 0.6
+"""Time [s] at the end in which the base comes to its goal."""
 
 
 def follow(world: World, trajectory: Trajectory, joints: slice, openings: Sequence[float]) -> None:
@@ -27,6 +33,49 @@ def follow(world: World, trajectory: Trajectory, joints: slice, openings: Sequen
         velocity: FloatArray = np.zeros(len(world.robot.joint_names))
         velocity[joints] = (wanted - world.commanded_positions[joints]) / World.DT
         world.step(JointCommand(velocity, openings))
+
+
+def follow_base(
+    world: World,
+    trajectory: BaseTrajectory,
+    openings: Sequence[float],
+    each_step: Callable[[], None] = lambda: None,
+) -> None:
+    """Drive the base along a trajectory by its wheels; the arms stay.
+
+    Wheels slip a little, so that the commanded twist is corrected by where the base is (Kanayama et al. 1990): ahead
+    or behind, beside the way, and turned off it. It ends as near to the goal as rolling allows, at rest.
+
+    Args:
+        world: The twin of a robot on wheels.
+        trajectory: Of the base, from where it is.
+        openings: Gap of each arm's fingers meanwhile [m].
+        each_step: Called after each step.
+
+    Raises:
+        TwinError: The robot has no wheels.
+    """
+    still = np.zeros(len(world.robot.joint_names))
+    count = int(np.ceil((trajectory.duration + SETTLE) / World.DT))
+    for step in range(1, count + 1):
+        wanted, twist, _ = trajectory.at(min(step * World.DT, trajectory.duration))
+        x, y, yaw = base_pose(world)
+        east, north = float(wanted[0]) - x, float(wanted[1]) - y
+        ahead = math.cos(yaw) * east + math.sin(yaw) * north
+        across = math.cos(yaw) * north - math.sin(yaw) * east
+        turned = float(np.remainder(wanted[2] - yaw + np.pi, 2 * np.pi) - np.pi)
+        speed, turn = float(twist[0]), float(twist[1])
+        command = (speed + ALONG * ahead, turn + TURNING * turned + BESIDE * speed * across)
+        world.step(JointCommand(still, openings, command))
+        each_step()
+    world.step(JointCommand(still, openings))
+
+
+def base_pose(world: World) -> tuple[float, float, float]:
+    """Where the base is: x, y [m] and yaw [rad] in the world."""
+    pose = world.base_pose
+    x, y, z, w = pose.orientation_xyzw.tolist()
+    return float(pose.position[0]), float(pose.position[1]), math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
 def wait(world: World, seconds: float, openings: Sequence[float]) -> None:

@@ -1,5 +1,6 @@
 """One arm of a robot: a chain of driven joints with a gripper at its end, in the frame of the world."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -35,9 +36,16 @@ class ArmModel:
     """
 
     def __init__(
-        self, spec: ArmSection, urdf: Urdf, urdf_path: Path, gripper: Gripper, base: Pose, called: str
+        self,
+        spec: ArmSection,
+        urdf: Urdf,
+        urdf_path: Path,
+        gripper: Gripper,
+        base: Pose,
+        called: str,
+        locked: Mapping[str, float],
     ) -> None:
-        """Take an arm from a checked robot file; messages call it `called`."""
+        """Take an arm from a checked robot file; messages call it `called`. Joints that nothing drives are locked."""
         self.name = spec.name
         self._called = called
         self.joint_names = spec.joints
@@ -51,7 +59,7 @@ class ArmModel:
         self.mimic = _mimicking(urdf, self.joint_names)
         self.tool_frame = spec.tool_frame
         self.gripper = gripper
-        self._kinematics = Kinematics(urdf_path, self.joint_names, self.mimic, self.tool_frame)
+        self._kinematics = Kinematics(urdf_path, self.joint_names, self.mimic, self.tool_frame, locked)
         self._solver = IkSolver(self._kinematics, self.lower, self.upper, self.home)
         self._stand(base)
 

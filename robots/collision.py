@@ -1,6 +1,6 @@
 """Distances of a robot to itself and to things around it (coal, through Pinocchio): the geometry that planners ask."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, Literal
@@ -17,6 +17,8 @@ from .pose import FloatArray, Pose, read_only
 
 FLOOR = "floor"
 """Name of the obstacle on which wheels roll."""
+FLAT = 1e-6
+"""Corners whose thickness is this part of their width, or less, have no hull."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +55,25 @@ class Obstacle:
             raise RobotError(
                 f"obstacle {self.name!r}: a {self.kind} needs {wanted[self.kind]} positive sizes [m], got {self.size}"
             )
-        if self.kind == "hull" and (self.corners is None or self.corners.ndim != 2 or len(self.corners) < 4):
-            raise RobotError(f"obstacle {self.name!r}: a hull needs at least four corners (k, 3) [m]")
+        where = self.pose_obstacle_in_world
+        if not (np.isfinite(where.position).all() and np.isfinite(where.orientation_xyzw).all()):
+            raise RobotError(
+                f"obstacle {self.name!r}: its pose must be finite, got {where.position} {where.orientation_xyzw}"
+            )
+        if self.kind == "hull" and not _spans_a_volume(self.corners):
+            raise RobotError(
+                f"obstacle {self.name!r}: a hull needs finite corners (k, 3) [m], at least four and not all in a plane"
+            )
+
+
+def _spans_a_volume(corners: FloatArray | None) -> bool:
+    """Whether there are corners with a hull: coal ends the whole process when asked for that of flat ones."""
+    if corners is None or corners.ndim != 2 or corners.shape[1] != 3 or len(corners) < 4:
+        return False
+    if not np.isfinite(corners).all():
+        return False
+    spread = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
+    return bool(spread[2] > FLAT * spread[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +120,12 @@ class CollisionModel:
             held: Things in the grippers, by arm; `pose_obstacle_in_world` is then the pose in the tool frame.
             may_touch: Pairs of a link's or a held thing's name and an obstacle's name whose contact is intended.
             moving: Arms that will move; pairs that stand still while only these do are left out. None takes all.
+
+        Raises:
+            RobotError: `held` or `moving` names an arm that the robot does not have.
         """
+        for arm in (*(held or {}), *(moving or ())):
+            robot.slice_of(arm)
         self.robot = robot
         self.obstacles = tuple(obstacles)
         self.held = {arm: tuple(things) for arm, things in (held or {}).items()}
@@ -111,21 +135,24 @@ class CollisionModel:
         own = self._geometry.ngeoms
         base = robot.pose_base_in_world
         to_base = pin.SE3(rotation_matrix(base.orientation_xyzw), np.array(base.position)).inverse()
-        carried = [
-            self._add(thing, robot.arms[arm].tool_frame) for arm, things in self.held.items() for thing in things
-        ]
+        held_by = {
+            arm: [self._add(thing, robot.arms[arm].tool_frame) for thing in things]
+            for arm, things in self.held.items()
+        }
+        carried = [index for things in held_by.values() for index in things]
         around = [self._add(thing, None, to_base) for thing in self.obstacles]
+        self._around = around
         names = [_name(self._model, each) for each in self._geometry.geometryObjects]
         allowed = {frozenset(pair) for pair in may_touch} | robot.may_touch
         if robot.drive is not None:
             allowed |= {frozenset((link, FLOOR)) for link in robot.drive.on_floor}
         pairs = list(own_pairs)
-        hands = {arm: self._hand(arm) for arm in self.held}
-        for index in carried:
-            hand = next(
-                hands[arm] for arm, things in self.held.items() if names[index] in {each.name for each in things}
-            )
-            pairs += [(link, index) for link in range(own) if names[link] not in hand]
+        for arm, things in held_by.items():
+            hand = self._hand(arm)
+            pairs += [(link, index) for index in things for link in range(own) if names[link] not in hand]
+        pairs += [
+            (one, other) for first, second in combinations(held_by.values(), 2) for one in first for other in second
+        ]
         for thing in around:
             pairs += [
                 (mover, thing)
@@ -159,6 +186,12 @@ class CollisionModel:
         return not pin.computeCollisions(
             self._model, self._data, self._geometry, self._geometry_data, self._configuration(q, openings), True
         )
+
+    def place_base(self, pose_base_in_world: Pose) -> None:
+        """Stand the robot elsewhere among the same obstacles; what it holds moves with it."""
+        to_base = _placement(pose_base_in_world).inverse()
+        for index, thing in zip(self._around, self.obstacles, strict=True):
+            self._geometry.geometryObjects[index].placement = to_base * _placement(thing.pose_obstacle_in_world)
 
     def nearest(self, q: FloatArray, openings: Mapping[str, float] | None = None) -> Nearest:
         """The nearest pair of what may not touch; see `free`. Distances below 0 are depths of penetration."""
@@ -226,14 +259,17 @@ def _hand_geometries(model: Any, geometry: Any, robot: RobotModel, arm: str) -> 
 
 def _robot_geometry(robot: RobotModel) -> tuple[Any, list[tuple[int, int]]]:
     """A copy of a robot's convex geometry that can be added to, and the pairs that may not touch."""
-    key = str(robot.urdf_path), robot.may_touch
+    # All that it depends on: two files may describe one URDF differently, and a URDF may be written anew.
+    hands = tuple((arm.joint_names[-1], arm.tool_frame) for arm in robot.arms.values())
+    postures = robot.home.tobytes(), tuple(robot.locked.items())
+    key = robot.urdf_path, robot.urdf_path.stat().st_mtime, robot.may_touch, robot.joint_names, hands, postures
     if key not in _MADE:
         _MADE[key] = _make_geometry(robot)
     geometry, pairs = _MADE[key]
     return geometry.copy(), pairs
 
 
-_MADE: dict[tuple[str, frozenset[frozenset[str]]], tuple[Any, list[tuple[int, int]]]] = {}
+_MADE: dict[Hashable, tuple[Any, list[tuple[int, int]]]] = {}
 _TRIED = 60
 """Postures in which pairs are tried; one that touches in nearly all of them is built so."""
 
@@ -263,7 +299,7 @@ def _apart(robot: RobotModel, model: Any, geometry: Any, pairs: list[tuple[int, 
         geometry.addCollisionPair(pin.CollisionPair(first, second))
     data, geometry_data = model.createData(), pin.GeometryData(geometry)
     rng = np.random.default_rng(0)  # fixed: which pairs count is a property of the robot
-    lower, upper = np.maximum(robot.lower, -np.pi), np.minimum(robot.upper, np.pi)
+    lower, upper = (np.where(np.isinf(each), np.sign(each) * np.pi, each) for each in (robot.lower, robot.upper))
     touching = np.zeros(len(pairs))
     for number in range(_TRIED + 1):
         q = robot.home if number == 0 else rng.uniform(lower, upper)

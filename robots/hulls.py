@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
+from .errors import RobotError
 from .meshes import kept, load
 from .pose import FloatArray
 from .triangle_mesh import TriangleMesh
@@ -25,12 +26,17 @@ def convex_pieces(path: Path) -> list[Path]:
     Raises:
         RobotError: The mesh cannot be read.
     """
-    hulls = _hulls(path)
+    try:
+        changed = path.stat().st_mtime
+    except OSError as error:
+        raise RobotError(f"{path}: cannot be read: {error.strerror}") from error
+    hulls = _hulls(path, changed)
     return [kept(path, f"hull-{number}-of-{len(hulls)}", partial(_mesh, hull)) for number, hull in enumerate(hulls)]
 
 
 @lru_cache(maxsize=32)
-def _hulls(path: Path) -> tuple[trimesh.Trimesh, ...]:
+def _hulls(path: Path, changed: float) -> tuple[trimesh.Trimesh, ...]:
+    del changed  # part of the key: a file that was written anew is read anew
     mesh = load(path)
     whole = trimesh.Trimesh(mesh.vertices, mesh.faces, process=True)
     hull = whole.convex_hull

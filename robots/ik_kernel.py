@@ -1,6 +1,7 @@
 """The inner loop of inverse kinematics, compiled by Numba when it is first used and kept on disk from then on.
 
-One step costs about a microsecond, where calls from Python into a library cost six. Arrays are laid out for that:
+One step costs about a microsecond, where calls from Python into a library cost seven. All of it is in one file, since
+Numba compiles anew what is in a file that changed, but not what calls it from another. Arrays are laid out for it:
 
 - joints, (m, 19): rotation and translation to the joint's frame (9 + 3), axis (3), 1 for a sliding joint, the index of
   the driven joint that it follows, ratio and offset of that. Chains only: each joint carries the next.

@@ -44,7 +44,7 @@ class IkSolver:
         self._bounds = np.array([lower, upper], dtype=float)
         self._home = np.array(home, dtype=float)
         self._endless = ~np.isfinite(self._bounds).any(axis=0)
-        self._turns = self._endless / (2.0 * np.pi)
+        self._turns_for_ever = bool(self._endless.any())
         self._table: PoseTable | None = None
 
     def with_kinematics(self, kinematics: Kinematics) -> "IkSolver":
@@ -94,8 +94,10 @@ class IkSolver:
             reason = "" if found.met else self._reason(problem, found)
         if found.met and posture is not None:
             found = pull_towards(problem, found, posture, self._endless)
-        # Joints that turn for ever end within half a turn of where they started.
-        q = found.q - 2.0 * np.pi * np.rint(self._turns * (found.q - (self._home if near is None else near)))
+        q = found.q
+        if self._turns_for_ever:  # joints that turn for ever end within half a turn of where they started
+            turns = self._endless * (q - (self._home if near is None else near)) / (2.0 * np.pi)
+            q = q - 2.0 * np.pi * np.rint(turns)
         return IkResult(
             found.met, q, found.position_error, found.steps, found.orientation_error, found.tried - 1, reason
         )

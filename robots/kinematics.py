@@ -32,11 +32,18 @@ class Kinematics:
     """Forward kinematics and Jacobian of one tool frame over the driven joints.
 
     Passive joints are folded in: with full positions q_full = M q + offset, the Jacobian of the driven joints is
-    J_full M. All other joints stay at their neutral position. Not safe to share between threads: Pinocchio keeps its
+    J_full M. All other joints stay where they are locked, or at their neutral position. Not safe to share between threads: Pinocchio keeps its
     results in one `Data`.
     """
 
-    def __init__(self, urdf: Path, driven: Sequence[str], mimic: Sequence[Mimic], tool_frame: str) -> None:
+    def __init__(
+        self,
+        urdf: Path,
+        driven: Sequence[str],
+        mimic: Sequence[Mimic],
+        tool_frame: str,
+        locked: Mapping[str, float] | None = None,
+    ) -> None:
         """Build the reduced model.
 
         Raises:
@@ -44,8 +51,8 @@ class Kinematics:
         """
         full = whole_model(urdf)
         moving = {*driven, *(each.joint for each in mimic)}
-        locked = [full.getJointId(name) for name in full.names[1:] if name not in moving]
-        self._model = pin.buildReducedModel(full, locked, pin.neutral(full))
+        still = [full.getJointId(name) for name in full.names[1:] if name not in moving]
+        self._model = pin.buildReducedModel(full, still, configuration(full, locked or {}))
         if not self._model.existFrame(tool_frame):
             frames = ", ".join(frame.name for frame in self._model.frames[1:])
             raise RobotError(f"{urdf}: no frame {tool_frame!r}; it has {frames}")

@@ -122,7 +122,7 @@ class RobotModel:
         for each in spec.arms:
             gripper = make_gripper(each, urdf, self.urdf_path, toml)
             called = spec.name if len(spec.arms) == 1 else f"{spec.name}'s arm {each.name}"
-            arms[each.name] = ArmModel(each, urdf, self.urdf_path, gripper, base, called)
+            arms[each.name] = ArmModel(each, urdf, self.urdf_path, gripper, base, called, spec.locked)
         self.arms: Mapping[str, ArmModel] = MappingProxyType(arms)
         self.joint_names = tuple(name for arm in arms.values() for name in arm.joint_names)
         self.lower, self.upper, self.velocity, self.acceleration, self.jerk, self.home = (

@@ -20,6 +20,13 @@ def check_against_urdf(spec: RobotFile, urdf: Urdf, toml: Path) -> None:
         _check_joints(spec.drive.wheels, f"{where}drive.wheels", spec.urdf, urdf)
         _check_links(spec.drive.rollers, f"{where}drive.rollers", spec.urdf, urdf)
     _check_joints(tuple(spec.locked), f"{where}locked", spec.urdf, urdf)
+    driven = {name for arm in spec.arms for name in (*arm.joints, *arm.gripper.joints)}
+    for name, position in spec.locked.items():
+        joint = urdf.joints[name]
+        if name in driven:
+            raise RobotError(f"{where}locked: {name!r} is driven by an arm; leave it out")
+        if not joint.lower <= position <= joint.upper:
+            raise RobotError(f"{where}locked: {name} must be in {joint.lower}..{joint.upper}, got {position}")
     for pair in spec.collision.ignore:
         _check_links(pair, f"{where}collision.ignore", spec.urdf, urdf)
     for name, camera in spec.cameras.items():
@@ -43,12 +50,19 @@ def _check_arm(arm: ArmSection, where: str, file: str, urdf: Urdf) -> None:
     gripper = arm.gripper
     closed = gripper.closed or (0.0, 0.0)
     if gripper.open is None and gripper.max_opening is not None:
-        way = 0.5 * (gripper.max_opening - gripper.closed_gap - 2.0 * gripper.mounting)
-        reach = min(urdf.joints[name].upper for name in gripper.joints)
-        if way > reach + 1e-9:
+        least = gripper.closed_gap + 2.0 * gripper.mounting
+        if gripper.max_opening <= least:
             raise RobotError(
-                f"{where}.gripper.max_opening: {gripper.joints[0]} opens to {reach:g} m, so at most "
-                f"{gripper.closed_gap + 2.0 * (gripper.mounting + reach):g}, got {gripper.max_opening}"
+                f"{where}.gripper.max_opening: must be above the gap of the closed fingers, {least:g} m, "
+                f"got {gripper.max_opening}"
+            )
+        reach, name = min(
+            (urdf.joints[name].upper - start, name) for name, start in zip(gripper.joints, closed, strict=True)
+        )
+        if 0.5 * (gripper.max_opening - least) > reach + 1e-9:
+            raise RobotError(
+                f"{where}.gripper.max_opening: {name} opens to {urdf.joints[name].upper:g} m, so at most "
+                f"{least + 2.0 * reach:g}, got {gripper.max_opening}"
             )
     for key, positions in (("closed", closed), ("open", gripper.open or closed)):
         for name, value in zip(gripper.joints, positions, strict=True):

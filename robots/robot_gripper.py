@@ -41,7 +41,7 @@ def make_gripper(arm: ArmSection, urdf: Urdf, urdf_path: Path, toml: Path) -> Gr
     # Revolute fingers cross before they are fully closed: what is left of the way closes no gap.
     first = int(np.argmax(gaps > 0)) if spec.pads is not None else 0
     ways, gaps = ways[first:], gaps[first:]
-    if np.any(np.diff(gaps) <= 0):
+    if not np.all(np.diff(gaps) > 0):
         raise RobotError(f"{toml}: arms.gripper: the gap between the pads must grow from closed to open")
     largest = float(gaps[-1]) if spec.max_opening is None else spec.max_opening
     if largest > gaps[-1] + 1e-9:
@@ -50,7 +50,7 @@ def make_gripper(arm: ArmSection, urdf: Urdf, urdf_path: Path, toml: Path) -> Gr
         )
     return Gripper(
         joints=(spec.joints[0], spec.joints[1]),
-        min_opening=float(gaps[0]) if len(ways) == 2 else 0.0,
+        min_opening=0.0 if first else float(gaps[0]),
         max_opening=largest,
         force=spec.force,
         closing_speed=spec.closing_speed,
@@ -89,4 +89,5 @@ def _measured(
         joints |= {each.joint: each.follow(joints[each.source]) for each in followers}
         first, second = frame_positions(urdf_path, joints, pads)
         across.append(second - first)
-    return np.array(across) @ (across[-1] / np.linalg.norm(across[-1]))
+    widest = float(np.linalg.norm(across[-1]))
+    return np.array(across) @ (across[-1] / widest) if widest else np.zeros(len(across))

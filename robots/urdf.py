@@ -134,9 +134,12 @@ def _read_joint(element: ElementTree.Element, path: Path) -> UrdfJoint:
         if text is None:
             return default
         try:
-            return float(text)
-        except ValueError as error:
-            raise RobotError(f"{path}: joint {name}: {key} must be a number, got {text!r}") from error
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if math.isnan(value):
+            raise RobotError(f"{path}: joint {name}: {key} must be a number, got {text!r}")
+        return value
 
     limit = element.find("limit")
     bounded = element.get("type") != "continuous"

@@ -382,13 +382,17 @@ class Physics:
         """Measure the force in a joint from now on."""
         pybullet.enableJointForceTorqueSensor(body, joint, True, physicsClientId=self._client)
 
-    def joint_wrench(self, body: int, joint: int) -> tuple[NDArray[np.float64], tuple[float, float, float, float]]:
-        """Force [N] and torque [Nm] in a joint in the last step, (6,), and its axes in the world as a quaternion xyzw.
+    def joint_wrench(self, body: int, joint: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Force [N] and torque [Nm] in a joint in the last step, (3,) each, along the axes of the world.
 
-        The axes are those of the carried link's inertia.
+        The torque is about the joint. PyBullet's is about the centre of mass of the carried link, and both of its
+        vectors are along the axes of that link's inertia.
         """
-        wrench = np.array(pybullet.getJointState(body, joint, physicsClientId=self._client)[2])
-        return wrench, pybullet.getLinkState(body, joint, physicsClientId=self._client)[1]
+        wrench = pybullet.getJointState(body, joint, physicsClientId=self._client)[2]
+        mass_centre, axes, _, _, frame, *_ = pybullet.getLinkState(body, joint, physicsClientId=self._client)
+        turn = np.reshape(pybullet.getMatrixFromQuaternion(axes, physicsClientId=self._client), (3, 3))
+        force, torque = turn @ wrench[:3], turn @ wrench[3:]
+        return force, torque + np.cross(np.subtract(mass_centre, frame), force)
 
     def joint_states(self, body: int, joints: list[int]) -> list[tuple[float, float, float]]:
         """Position, velocity and the motor's effort of each joint."""

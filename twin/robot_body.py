@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.arm_model import ArmModel
-from robots.kinematics import rotation_matrix
 from robots.model import RobotModel
 from robots.pose import FloatArray, Pose
 
@@ -201,11 +200,9 @@ class RobotBody:
     def wrist_wrench(self, number: int) -> FloatArray:
         """What the hand and what it holds pull at an arm's last joint, (6,): force [N] then torque [Nm], world's axes.
 
-        A hand at rest shows its weight, downwards.
+        The torque is about the joint. A hand at rest shows its weight, downwards.
         """
-        wrench, orientation = self._physics.joint_wrench(self.body, self._hands[number].wrist)
-        rotation = rotation_matrix(np.array(orientation))
-        return -np.concatenate((rotation @ wrench[:3], rotation @ wrench[3:]))
+        return -np.concatenate(self._physics.joint_wrench(self.body, self._hands[number].wrist))
 
     def base(self) -> Pose:
         """Pose of the base frame in the world."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from robots import load_robot
 from robots.collision import FLOOR, Obstacle
 from robots.model import RobotModel
-from robots.pose import FloatArray
+from robots.pose import FloatArray, Pose
 
 from .board import BLOCK
 from .errors import SceneError, TwinError
@@ -162,6 +162,11 @@ class World:
     def commanded_openings(self) -> tuple[float, ...]:
         """Gap that each arm's gripper was told to make [m]."""
         return self._robot.openings
+
+    @property
+    def base_pose(self) -> Pose:
+        """Pose of the robot's base in the world, now."""
+        return self._robot.base()
 
     @property
     def placed_robot(self) -> RobotModel:

@@ -1,11 +1,14 @@
 """The solvers that `showtell bench kinematics` compares: ours, PyBullet's and pink's, each made strong.
 
-PyBullet and pink restart from random postures, drawn before the clock starts. Their settings are chosen anew in every
-run, on pilot targets that are not among those measured.
+PyBullet and pink start from the home posture or a random one, and restart from random ones, drawn before the clock
+starts. Their settings are chosen anew in every run, on pilot targets that are not among those measured.
 """
 
+import importlib
 import importlib.util
 import math
+import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -27,7 +30,7 @@ class Contender(Protocol):
     """A solver for one arm."""
 
     def solve(self, target: Pose, starts: FloatArray) -> Answer:
-        """Answer a question; `starts` (1 + restarts, n) are random postures for those who need some."""
+        """Answer a question; `starts`, (1 + restarts, n), are random postures for those who need some."""
 
     def __str__(self) -> str:
         """The settings."""
@@ -112,6 +115,7 @@ class PyBulletSettings:
     iterations: int
     calls: int
     threshold: float
+    home_first: bool = True
     null_space: bool = False
 
 
@@ -119,10 +123,11 @@ PYBULLET_CANDIDATES = (
     PyBulletSettings(None, 100, 3, 1e-5),
     PyBulletSettings(None, 100, 3, 1e-5, null_space=True),
     *(
-        PyBulletSettings(damping, iterations, calls, threshold)
+        PyBulletSettings(damping, iterations, calls, threshold, home_first)
         for damping in (1e-2, 1e-3, 1e-4, 1e-6)
         for iterations, calls in ((20, 1), (20, 3), (100, 1))
         for threshold in (1e-4, 1e-5)
+        for home_first in (True, False)
     ),
 )
 """Tried on the pilot targets. IK_SDLS is left out: it ends the process (PyBullet 3.2.7)."""
@@ -135,6 +140,7 @@ class PyBulletIk:
         self._client, self._settings = client, settings
         self._check = _Check(question)
         self._offset, self._whole_pose = question.offset_in_base, question.whole_pose
+        self._home = question.arm.home[None]
         self._body = pybullet.loadURDF(str(question.chain_urdf), useFixedBase=True, physicsClientId=client)
         count = pybullet.getNumJoints(self._body, physicsClientId=client)
         joints = [pybullet.getJointInfo(self._body, index, physicsClientId=client) for index in range(count)]
@@ -163,6 +169,8 @@ class PyBulletIk:
         """See `Contender`."""
         position = target.position - self._offset
         goal = pin.XYZQUATToSE3(np.concatenate((position, target.orientation_xyzw)))
+        if self._settings.home_first:
+            starts = np.concatenate((self._home, starts[1:]))
         arguments = [position.tolist(), target.orientation_xyzw.tolist()][: 2 if self._whole_pose else 1]
         for restart, start in enumerate(starts.tolist()):
             q = [start[index] for index in self._back]
@@ -185,7 +193,7 @@ class PyBulletIk:
         space = ", limits, ranges and rest poses given" if each.null_space else ""
         return (
             f"IK_DLS, {damping}, maxNumIterations {each.iterations}, residualThreshold {each.threshold:g}, up to "
-            f"{each.calls} calls a start{space}; chain without meshes; random starts"
+            f"{each.calls} calls a start{space}; chain without meshes; {_starts_text(each.home_first)}"
         )
 
 
@@ -195,14 +203,17 @@ class PinkSettings:
 
     lm_damping: float
     damping: float
+    limit_gain: float
     steps: int
+    home_first: bool
 
 
 PINK_CANDIDATES = tuple(
-    PinkSettings(lm_damping, damping, steps)
-    for lm_damping in (0.0, 1e-3, 1e-1)
-    for damping in (1e-12, 1e-6)
+    PinkSettings(lm_damping, damping, limit_gain, steps, home_first)
+    for lm_damping, damping in ((0.0, 1e-6), (1e-3, 1e-6), (1e-2, 1e-12), (1e-1, 1e-12))
+    for limit_gain in (0.5, 1.0)
     for steps in (15, 40)
+    for home_first in (True, False)
 )
 """Tried on the pilot targets."""
 
@@ -211,19 +222,20 @@ class PinkIk:
     """`pink.solve_ik` with quadprog, a frame task and joint limits, stepped until the errors are small enough."""
 
     def __init__(self, question: ArmQuestion, settings: PinkSettings) -> None:
+        _load_quadprog()
         import pink
         from pink.limits import ConfigurationLimit
 
         self._settings = settings
         self._check = _Check(question)
         model = self._check.model
-        self._offset = question.offset_in_base
+        self._offset, self._home = question.offset_in_base, question.arm.home[None]
         self._solve_ik = pink.solve_ik
         cost = 1.0 if question.whole_pose else 0.0
         self._task = pink.tasks.FrameTask(
             question.chain_tip, position_cost=1.0, orientation_cost=cost, lm_damping=settings.lm_damping
         )
-        self._limits = [ConfigurationLimit(model, config_limit_gain=1.0)]
+        self._limits = [ConfigurationLimit(model, config_limit_gain=settings.limit_gain)]
         self._configuration = pink.Configuration(model, self._check.data, pin.neutral(model), copy_data=False)
         names = list(model.names)[1:]
         self._order = [names.index(name) for name in question.arm.joint_names]
@@ -233,6 +245,8 @@ class PinkIk:
         """See `Contender`."""
         goal = pin.XYZQUATToSE3(np.concatenate((target.position - self._offset, target.orientation_xyzw)))
         self._task.set_target(goal)
+        if self._settings.home_first:
+            starts = np.concatenate((self._home, starts[1:]))
         configuration, check = self._configuration, self._check
         for restart, start in enumerate(starts):
             q = start[self._back]
@@ -266,8 +280,26 @@ class PinkIk:
         each = self._settings
         return (
             f"quadprog, lm_damping {each.lm_damping:g}, damping {each.damping:g}, gain 1, dt 1, "
-            f"config_limit_gain 1, up to {each.steps} steps a start; random starts"
+            f"config_limit_gain {each.limit_gain:g}, up to {each.steps} steps a start; {_starts_text(each.home_first)}"
         )
+
+
+def _starts_text(home_first: bool) -> str:
+    return "home posture first, then random starts" if home_first else "random starts"
+
+
+def _load_quadprog() -> None:
+    """Import quadprog so that it calls its own functions.
+
+    It exports a function `dot`, and so does the library of highspy: where that was loaded before, quadprog would call
+    the wrong one and end the process.
+    """
+    flags = sys.getdlopenflags()
+    sys.setdlopenflags(flags | getattr(os, "RTLD_DEEPBIND", 0))
+    try:
+        importlib.import_module("quadprog")
+    finally:
+        sys.setdlopenflags(flags)
 
 
 def pink_is_there() -> bool:

@@ -30,7 +30,7 @@ from executor.bench.report import BenchReport
 from robots import list_robots, load_robot
 from robots.pose import Pose
 
-PILOT = 60
+PILOT = 100
 """Targets on which the others' settings are chosen; they are not measured."""
 
 BLOCK = 50

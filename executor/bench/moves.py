@@ -7,9 +7,10 @@ import numpy as np
 
 from executor.bench.pool import spread
 from executor.bench.report import BenchReport
+from executor.follow import base_pose, follow_base
 from robots.collision import CollisionModel
-from robots.pose import FloatArray
-from robots.trajectories import JointLimits, check_limits, plan_motion
+from robots.pose import FloatArray, Pose
+from robots.trajectories import BaseLimits, JointLimits, check_limits, drive_base, plan_motion
 from twin import JointCommand, World
 
 SCENES = {"three_dof": "board", "baxter": "tabletop", "mico_segway": "ordering"}
@@ -21,10 +22,16 @@ SAMPLE = World.DT
 """Period at which a trajectory is held against its limits [s]."""
 ROUNDING = 1e-6
 """A ratio above 1 by no more than this is rounding."""
+LOOK_EVERY = 4
+"""Samples between two looks at the distance of the robot to itself: 60 a second."""
 TRACKING = 2e-3
 """How far the joints of the twin may be from the trajectory [rad]."""
 CHUNK = 25
 """Moves made one after the other in one world."""
+BASE_MARGIN = 0.02
+"""Distance [m] that the base keeps from everything."""
+FLOOR_SPACE = (np.array([-2.0, -1.5, -np.pi]), np.array([-0.1, 1.5, np.pi]))
+"""Least and greatest x, y [m] and yaw [rad] of the base's goals."""
 TRIES = 40
 """Goals tried for one move: most random postures of two arms touch something."""
 
@@ -41,6 +48,7 @@ class Moves:
         unplanned: Goals to which no way was found; another one was taken.
         worst: Largest part of any limit that was used.
         farthest: Largest distance of a joint from its trajectory [rad].
+        base_off: How far the base ended from its goal [m], for each of its moves.
     """
 
     made: int
@@ -50,6 +58,7 @@ class Moves:
     unplanned: int
     worst: float
     farthest: float
+    base_off: tuple[float, ...] = ()
 
 
 def run(
@@ -81,9 +90,11 @@ def run(
             f"{robot}.largest_part_of_a_limit": max(each.worst for each in done),
             f"{robot}.farthest_from_trajectory_mrad": 1000 * max(each.farthest for each in done),
         }
+        if off := [1000 * each for result in done for each in result.base_off]:
+            figures |= {f"{robot}.base_moves": len(off), f"{robot}.base_worst_off_mm": max(off)}
     settings = {
         "showtell": f"random free postures of all joints, planned with {1000 * MARGIN:g} mm to everything, limits "
-        f"checked at {1 / SAMPLE:.0f} Hz, contacts after every physics step"
+        f"checked at {1 / SAMPLE:.0f} Hz, contacts after every physics step, self-collision at {1 / SAMPLE / LOOK_EVERY:.0f} Hz"
     }
     return BenchReport(figures, settings=settings)
 
@@ -119,12 +130,65 @@ def _some_moves(task: tuple[str, int, int, int]) -> Moves:
             report = check_limits(plan.trajectory, limits, SAMPLE)
             worst = max(worst, report.worst)
             violations += report.worst > 1 + ROUNDING
-            touched, off = _play(world, plan.trajectory.sample(SAMPLE).position, list(openings.values()))
-            touches += touched
+            positions = plan.trajectory.sample(SAMPLE).position
+            touched, off = _play(world, positions, list(openings.values()))
+            # PyBullet's robots pass through themselves; the geometry of the plan does not.
+            crossed = not all(around.free(q, openings, 0.0) for q in positions[::LOOK_EVERY])
+            touches += touched or crossed
             strays += off > TRACKING
             farthest = max(farthest, off)
             made += 1
-    return Moves(made, violations, touches, strays, unplanned, worst, farthest)
+        base_off: tuple[float, ...] = ()
+        if model.drive is not None:
+            # The arm stays as it is: where it reaches out, the base needs more room.
+            around.place_base(world.base_pose)
+            part, touched, end = _move_base(world, around, rng)
+            worst, base_off = max(worst, part), (end,)
+            violations += part > 1 + ROUNDING
+            touches += touched
+    return Moves(made, violations, touches, strays, unplanned, worst, farthest, base_off)
+
+
+def _move_base(world: World, around: CollisionModel, rng: np.random.Generator) -> tuple[float, bool, float]:
+    """Drive the base to a random free pose.
+
+    Returns the largest part of a limit, whether anything was touched, and how far from its goal it ended [m].
+    """
+    drive = world.robot.drive
+    if drive is None:
+        raise ValueError(f"{world.robot.name} has no wheels")
+    limits = BaseLimits(
+        drive.speed, drive.acceleration, drive.jerk, drive.yaw_rate, drive.yaw_acceleration, drive.yaw_jerk
+    )
+    height = float(world.base_pose.position[2])
+    q, openings = world.commanded_positions, dict(zip(world.robot.arms, world.commanded_openings, strict=True))
+
+    def free(pose: FloatArray, margin: float = BASE_MARGIN) -> bool:
+        x, y, yaw = pose.tolist()
+        turn = np.array([0.0, 0.0, np.sin(yaw / 2), np.cos(yaw / 2)])
+        around.place_base(Pose(np.array([x, y, height]), turn))
+        return around.free(q, openings, margin)
+
+    start = np.array(base_pose(world))
+    for _ in range(TRIES):
+        goal = rng.uniform(*FLOOR_SPACE)
+        if not free(goal):
+            continue
+        planned = drive_base(start, goal, limits, free, rng)
+        if planned.trajectory is not None:
+            break
+    else:
+        raise RuntimeError(f"no way was found for the base to {TRIES} goals from {start}: {planned.reason}")
+    samples = planned.trajectory.sample(SAMPLE)
+    most = np.array([[drive.speed, drive.yaw_rate], [drive.acceleration, drive.yaw_acceleration]])
+    part = max(
+        float((np.abs(values) / bound).max())
+        for values, bound in zip((samples.twist, samples.acceleration), most, strict=True)
+    )
+    touched: list[bool] = []
+    follow_base(world, planned.trajectory, world.commanded_openings, lambda: touched.append(bool(world.touches())))
+    end = np.array(base_pose(world))
+    return part, any(touched), float(np.linalg.norm(end[:2] - planned.trajectory.goal[:2]))
 
 
 def _free_posture(

@@ -325,11 +325,11 @@ def test_nonsense_questions_are_refused(seven: Chain) -> None:
     for target, message in ((lost, "three finite numbers"), (twisted, "unit quaternion")):
         with pytest.raises(RobotError, match=message):
             seven.solver.solve(target)
-    for name in ("start", "posture"):
-        with pytest.raises(RobotError, match=f"{name} must be 7 finite joint positions"):
-            seven.solver.solve(pose, **{name: np.zeros(6)})
-        with pytest.raises(RobotError, match=f"{name} must be 7 finite joint positions"):
-            seven.solver.solve(pose, **{name: np.full(7, np.nan)})
+    for wrong in (np.zeros(6), np.full(7, np.nan)):
+        with pytest.raises(RobotError, match="start must be 7 finite joint positions"):
+            seven.solver.solve(pose, start=wrong)
+        with pytest.raises(RobotError, match="posture must be 7 finite joint positions"):
+            seven.solver.solve(pose, posture=wrong)
     with pytest.raises(RobotError, match="position_tolerance must be positive \\[m\\], got nan"):
         seven.solver.solve(pose, position_tolerance=float("nan"))
     with pytest.raises(RobotError, match="orientation_tolerance must be positive \\[rad\\], got 0"):
