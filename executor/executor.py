@@ -29,6 +29,17 @@ class Executor:
     """
 
     def __init__(self, world: "World", knowledge: "Knowledge", rng: np.random.Generator | None = None) -> None:
+        """Take a world and what was learned.
+
+        Raises:
+            InputError: The world is none that sentences are carried out in yet; says which are.
+        """
+        robot, scene = world.robot, world.spec
+        if scene.kind != "board" or len(robot.joint_names) != 3:
+            raise InputError(
+                f"sentences are carried out by an arm of three joints on the board so far, not by {robot.name} in "
+                f"scene {scene.name!r}: use a board scene with the robot three_dof"
+            )
         self.world = world
         self.knowledge = knowledge
         self.rng = np.random.default_rng(world.spec.seed) if rng is None else rng

@@ -3,77 +3,18 @@
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, Literal
+from typing import Any
 
 import coal
 import numpy as np
 import pinocchio as pin
 
-from .errors import RobotError
 from .kinematics import configuration, rotation_matrix, whole_model
 from .model import RobotModel
-from .pose import FloatArray, Pose, read_only
+from .obstacle import FLOOR, Obstacle
+from .pose import FloatArray, Pose
 
-
-FLOOR = "floor"
-"""Name of the obstacle on which wheels roll."""
-FLAT = 1e-6
-"""Corners whose thickness is this part of their width, or less, have no hull."""
-
-
-@dataclass(frozen=True, slots=True)
-class Obstacle:
-    """A convex thing in the world.
-
-    Attributes:
-        name: What it is called in answers.
-        kind: `box` with full side lengths, `sphere` with its radius, `cylinder` with its radius and its length along
-            z, or `hull`.
-        size: Numbers of the kind [m]; empty for a hull.
-        pose_obstacle_in_world: Where it is.
-        corners: Corners of a hull, (k, 3) [m].
-    """
-
-    name: str
-    kind: Literal["box", "sphere", "cylinder", "hull"]
-    size: tuple[float, ...]
-    pose_obstacle_in_world: Pose
-    corners: FloatArray | None = None
-
-    def __post_init__(self) -> None:
-        """Freeze the corners.
-
-        Raises:
-            RobotError: The number of sizes is not the kind's, or one is not positive.
-        """
-        if self.corners is not None:
-            object.__setattr__(self, "corners", read_only(self.corners))
-        wanted = {"box": 3, "sphere": 1, "cylinder": 2, "hull": 0}
-        if self.kind not in wanted:
-            raise RobotError(f"obstacle {self.name!r}: kind must be one of {', '.join(wanted)}, got {self.kind!r}")
-        if len(self.size) != wanted[self.kind] or not all(np.isfinite(self.size)) or min(self.size, default=1.0) <= 0:
-            raise RobotError(
-                f"obstacle {self.name!r}: a {self.kind} needs {wanted[self.kind]} positive sizes [m], got {self.size}"
-            )
-        where = self.pose_obstacle_in_world
-        if not (np.isfinite(where.position).all() and np.isfinite(where.orientation_xyzw).all()):
-            raise RobotError(
-                f"obstacle {self.name!r}: its pose must be finite, got {where.position} {where.orientation_xyzw}"
-            )
-        if self.kind == "hull" and not _spans_a_volume(self.corners):
-            raise RobotError(
-                f"obstacle {self.name!r}: a hull needs finite corners (k, 3) [m], at least four and not all in a plane"
-            )
-
-
-def _spans_a_volume(corners: FloatArray | None) -> bool:
-    """Whether there are corners with a hull: coal ends the whole process when asked for that of flat ones."""
-    if corners is None or corners.ndim != 2 or corners.shape[1] != 3 or len(corners) < 4:
-        return False
-    if not np.isfinite(corners).all():
-        return False
-    spread = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
-    return bool(spread[2] > FLAT * spread[0])
+__all__ = ["FLOOR", "CollisionModel", "Nearest", "Obstacle"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,8 +77,7 @@ class CollisionModel:
         base = robot.pose_base_in_world
         to_base = pin.SE3(rotation_matrix(base.orientation_xyzw), np.array(base.position)).inverse()
         held_by = {
-            arm: [self._add(thing, robot.arms[arm].tool_frame) for thing in things]
-            for arm, things in self.held.items()
+            arm: [self._add(thing, robot.arms[arm].tool_frame) for thing in things] for arm, things in self.held.items()
         }
         carried = [index for things in held_by.values() for index in things]
         around = [self._add(thing, None, to_base) for thing in self.obstacles]

@@ -8,6 +8,7 @@ import trimesh
 
 from .errors import RobotError
 from .meshes import kept, load
+from .obstacle import span_a_volume
 from .pose import FloatArray
 from .triangle_mesh import TriangleMesh
 
@@ -24,7 +25,7 @@ def convex_pieces(path: Path) -> list[Path]:
     torso fills but half of its one hull, which would keep his elbows away from his waist.
 
     Raises:
-        RobotError: The mesh cannot be read.
+        RobotError: The mesh cannot be read, or is flat.
     """
     try:
         changed = path.stat().st_mtime
@@ -38,10 +39,13 @@ def convex_pieces(path: Path) -> list[Path]:
 def _hulls(path: Path, changed: float) -> tuple[trimesh.Trimesh, ...]:
     del changed  # part of the key: a file that was written anew is read anew
     mesh = load(path)
+    if not span_a_volume(mesh.vertices):
+        raise RobotError(f"{path}: is flat: only a mesh with a volume can be collided with; use a thin box")
     whole = trimesh.Trimesh(mesh.vertices, mesh.faces, process=True)
     hull = whole.convex_hull
     slices = _slices(whole)
-    return (hull,) if sum(each.volume for each in slices) * SLACK > hull.volume else tuple(slices)
+    convex = not slices or sum(each.volume for each in slices) * SLACK > hull.volume
+    return (hull,) if convex else tuple(slices)
 
 
 def _slices(mesh: trimesh.Trimesh) -> list[trimesh.Trimesh]:

@@ -32,8 +32,8 @@ class Kinematics:
     """Forward kinematics and Jacobian of one tool frame over the driven joints.
 
     Passive joints are folded in: with full positions q_full = M q + offset, the Jacobian of the driven joints is
-    J_full M. All other joints stay where they are locked, or at their neutral position. Not safe to share between threads: Pinocchio keeps its
-    results in one `Data`.
+    J_full M. All other joints stay where they are locked, or at their neutral position. Not safe to share between
+    threads: Pinocchio keeps its results in one `Data`.
     """
 
     def __init__(

@@ -41,10 +41,7 @@ def share_directories() -> tuple[Path, ...]:
 
 
 def resolve(filename: str, urdf: Path, link: str) -> Path:
-    """Find the file that a URDF's `<mesh filename=...>` means.
-
-    `package://name/rest` is looked for in the installed packages' share directories, those of ROS where its environment
-    is set, and the folders above the URDF; other names are absolute or relative to the URDF.
+    """Find the file that a URDF's `<mesh filename=...>` means; see `find`.
 
     Args:
         filename: What the URDF says.
@@ -54,23 +51,38 @@ def resolve(filename: str, urdf: Path, link: str) -> Path:
     Raises:
         RobotError: There is no such file; names URDF, link, file and where it was looked for.
     """
+    return find(filename, urdf, f"link {link!r}: mesh")
+
+
+def find(filename: str, beside: Path, what: str) -> Path:
+    """Find the file that another one names.
+
+    `package://name/rest` is looked for in the installed packages' share directories, those of ROS where its environment
+    is set, and the folders above the naming file; other names are absolute or relative to it.
+
+    Args:
+        filename: The name.
+        beside: The file that names it.
+        what: What is named, for the message.
+
+    Raises:
+        RobotError: There is no such file; names both files and where it was looked for.
+    """
     if filename.startswith("package://"):
         rest = filename.removeprefix("package://")
         name = rest.partition("/")[0]
-        above = urdf.resolve().parents
+        above = beside.resolve().parents
         candidates = [directory / rest for directory in (*share_directories(), *above)]
         candidates += [folder.parent / rest for folder in above if folder.name == name]
         advice = f"install the package {name!r} (robots of the field: pip install example-robot-data) or put its folder"
-        advice += (
-            f" beside the URDF; looked in {', '.join(map(str, share_directories()))} and the folders above the URDF"
-        )
+        advice += f" beside this file; looked in {', '.join(map(str, share_directories()))} and the folders above it"
     else:
-        candidates = [urdf.parent / filename.removeprefix("file://")]
+        candidates = [beside.parent / filename.removeprefix("file://")]
         advice = "put the file there or correct the name"
     for candidate in candidates:
         if candidate.is_file():
             return candidate
-    raise RobotError(f"{urdf}: link {link!r}: mesh {filename} is missing: {advice}")
+    raise RobotError(f"{beside}: {what} {filename} is missing: {advice}")
 
 
 def load(path: Path) -> TriangleMesh:

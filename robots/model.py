@@ -90,7 +90,7 @@ class RobotModel:
         jerk: Jerk limits, (n,) [rad/s³].
         home: Home posture, (n,) [rad].
         mimic: Passive joints that follow driven ones, those of the fingers included.
-        locked: Positions of joints that nothing drives.
+        locked: Positions of joints that nothing drives, and of those that mimic them.
         may_touch: Pairs of links whose contact is not a collision.
         pose_base_in_world: Where the base stands; `placed_at` gives the same robot elsewhere.
     """
@@ -118,11 +118,12 @@ class RobotModel:
         check_against_urdf(spec, urdf, toml)
         base = pose_base_in_world or Pose(np.array(spec.base.position), np.array(spec.base.orientation_xyzw))
         self.pose_base_in_world = base
+        locked = _locked(spec, urdf)
         arms = {}
         for each in spec.arms:
             gripper = make_gripper(each, urdf, self.urdf_path, toml)
             called = spec.name if len(spec.arms) == 1 else f"{spec.name}'s arm {each.name}"
-            arms[each.name] = ArmModel(each, urdf, self.urdf_path, gripper, base, called, spec.locked)
+            arms[each.name] = ArmModel(each, urdf, self.urdf_path, gripper, base, called, locked)
         self.arms: Mapping[str, ArmModel] = MappingProxyType(arms)
         self.joint_names = tuple(name for arm in arms.values() for name in arm.joint_names)
         self.lower, self.upper, self.velocity, self.acceleration, self.jerk, self.home = (
@@ -136,7 +137,7 @@ class RobotModel:
             if joint.mimic and joint.mimic.source in fingers and joint.name not in fingers
         )
         self.mimic = tuple(each for arm in arms.values() for each in arm.mimic) + self.finger_mimic
-        self.locked: Mapping[str, float] = MappingProxyType(dict(spec.locked))
+        self.locked: Mapping[str, float] = MappingProxyType(locked)
         self.may_touch = frozenset(frozenset(pair) for pair in spec.collision.ignore)
         self.floor = spec.floor
         self.drive = None if spec.drive is None else _drive(spec.drive, urdf)
@@ -238,6 +239,16 @@ def _drive(spec: DriveSection, urdf: Urdf) -> Drive:
     """The base of a robot file."""
     wheels = tuple(urdf.joints[name].child for name in spec.wheels)
     return Drive(**spec.model_dump(), on_floor=wheels + spec.rollers)
+
+
+def _locked(spec: RobotFile, urdf: Urdf) -> dict[str, float]:
+    """Positions of joints that nothing drives, and of those that mimic them."""
+    followers = {
+        joint.name: joint.mimic.follow(spec.locked[joint.mimic.source])
+        for joint in urdf.joints.values()
+        if joint.mimic and joint.mimic.source in spec.locked
+    }
+    return followers | spec.locked
 
 
 def _mounted(spec: RobotFile, finger_mounting: float | None) -> RobotFile:

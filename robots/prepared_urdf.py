@@ -19,27 +19,23 @@ import numpy as np
 from .errors import RobotError
 from .hulls import convex_pieces
 from .kinematics import rpy_matrix
-from .meshes import decimated, resolve
+from .meshes import decimated, find, resolve
 from .robot_file import RobotFile
+from .urdf import read_urdf
 
 
 def prepare_urdf(folder: Path, spec: RobotFile) -> Path:
     """Give the URDF to use for a robot file.
 
     Raises:
-        RobotError: The URDF or one of its meshes is missing; names file, link and mesh.
+        RobotError: The URDF is missing or wrong, or one of its meshes is; names file, link and mesh.
     """
     named = folder / spec.urdf
-    source = resolve(spec.urdf, folder / "robot.toml", "urdf") if spec.urdf.startswith("package://") else named
-    try:
-        tree = ElementTree.parse(source)
-    except OSError as error:
-        raise RobotError(f"{source}: cannot be read: {error.strerror}") from error
-    except ElementTree.ParseError as error:
-        raise RobotError(f"{source}: not valid XML: {error}") from error
-    root = tree.getroot()
+    source = find(spec.urdf, folder / "robot.toml", "urdf:") if spec.urdf.startswith("package://") else named
+    read_urdf(source)  # what is wrong is told of the user's file, not of our copy
+    root = ElementTree.parse(source).getroot()
     # Every one is asked: `or` would stop at the first that changed something.
-    changed = [_find_meshes(root, source), _mount_fingers(root, spec)]
+    changed = [_find_meshes(root, source), _mount_fingers(root, source, spec)]
     if not any(changed):
         return source
     for link in root.findall("link"):
@@ -107,7 +103,7 @@ def _find_meshes(root: ElementTree.Element, source: Path) -> bool:
     return found
 
 
-def _mount_fingers(root: ElementTree.Element, spec: RobotFile) -> bool:
+def _mount_fingers(root: ElementTree.Element, source: Path, spec: RobotFile) -> bool:
     """Shift each finger's carriage outwards. Returns whether any is."""
     joints = {joint.get("name"): joint for joint in root.findall("joint")}
     shifted = False
@@ -122,19 +118,26 @@ def _mount_fingers(root: ElementTree.Element, spec: RobotFile) -> bool:
             if joint is None:
                 continue  # told by the check against the URDF
             if joint.get("type") != "prismatic":
-                raise RobotError(f"{spec.urdf}: joint {name}: only fingers that slide can be mounted elsewhere")
+                raise RobotError(f"{source}: joint {name}: only fingers that slide can be mounted elsewhere")
             origin = joint.find("origin")
             if origin is None:
                 origin = ElementTree.SubElement(joint, "origin")
             axis = joint.find("axis")
-            along = np.array(_numbers("1 0 0" if axis is None else axis.get("xyz", "1 0 0")))
+            where = f"{source}: joint {name}"
+            along = np.array(_three("1 0 0" if axis is None else axis.get("xyz", "1 0 0"), f"{where}: axis"))
             outwards = np.sign(opened[index] - closed[index]) * along / np.linalg.norm(along)
-            turned = rpy_matrix(_numbers(origin.get("rpy", "0 0 0"))) @ outwards
-            place = np.array(_numbers(origin.get("xyz", "0 0 0"))) + gripper.mounting * turned
+            turned = rpy_matrix(_three(origin.get("rpy", "0 0 0"), f"{where}: rpy")) @ outwards
+            place = np.array(_three(origin.get("xyz", "0 0 0"), f"{where}: xyz")) + gripper.mounting * turned
             origin.set("xyz", " ".join(f"{value:.9g}" for value in place))
             shifted = True
     return shifted
 
 
-def _numbers(text: str) -> list[float]:
-    return [float(part) for part in text.split()]
+def _three(text: str, where: str) -> list[float]:
+    try:
+        numbers = [float(part) for part in text.split()]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 3 or not np.isfinite(numbers).all():
+        raise RobotError(f"{where} must be three finite numbers, got {text!r}")
+    return numbers

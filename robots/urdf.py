@@ -31,7 +31,7 @@ class Mimic:
 
 @dataclass(frozen=True, slots=True)
 class UrdfJoint:
-    """The link that a movable joint carries, and its limits: [rad] or [m], and per second; infinite where the URDF sets none."""
+    """The link that a movable joint carries, and its limits [rad or m, and per s]; infinite where there is none."""
 
     name: str
     child: str

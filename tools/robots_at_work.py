@@ -21,13 +21,13 @@ def main(path: Path) -> None:
     """Draw the three."""
     rng = np.random.default_rng(3)
     shots: list[tuple[str, SceneSpec, tuple[float, ...], tuple[float, ...], float]] = [
-        ("three_dof: board", resolve_scene("board-all", 4), (0.95, -0.62, 0.72), (0.12, 0.20, 0.24), 1.35),
+        ("three_dof: board", resolve_scene("board-all", 4), (1.0, -0.72, 0.80), (0.10, 0.20, 0.30), 1.1),
         (
             "baxter: tabletop",
             random_tabletop(rng, including="red_mug"),
-            (2.0, -1.05, 0.95),
-            (0.42, 0.0, 0.22),
-            1.6,
+            (2.25, -1.25, 1.05),
+            (0.36, 0.0, 0.30),
+            1.35,
         ),
         (
             "mico_segway: ordering",

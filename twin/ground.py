@@ -79,11 +79,20 @@ class Ground:
         return [slab.obstacle() for slab in self.slabs]
 
 
-def board_ground() -> Ground:
-    """The board: squares painted on a large table."""
+def board_ground(robot: RobotModel) -> Ground:
+    """The board: squares painted on a large table, on which the robot stands too, unless it stands on the floor."""
     middle = CELLS * CELL / 2
-    table = Slab("table", (middle - 0.6, middle - 0.6, -0.1), (middle + 0.6, middle + 0.6, 0.0), _TABLE_RGB)
-    return Ground((table,), tuple((*_squares(parity), rgb) for parity, rgb in enumerate(_SQUARES_RGB)))
+    near = middle - 0.6 if robot.floor is None else BOARD_EDGE
+    slabs = [Slab("table", (near, middle - 0.6, -0.1), (middle + 0.6, middle + 0.6, 0.0), _TABLE_RGB), *_floor(robot)]
+    return Ground(tuple(slabs), tuple((*_squares(parity), rgb) for parity, rgb in enumerate(_SQUARES_RGB)))
+
+
+def beside_board(robot: RobotModel) -> RobotModel:
+    """A robot where it stands at the board: one on the floor is drawn back, before the middle of the board."""
+    if robot.floor is None:
+        return robot
+    base = robot.pose_base_in_world
+    return robot.placed_at(Pose(base.position + np.array([-DRAWN_BACK, CELLS * CELL / 2, 0.0]), base.orientation_xyzw))
 
 
 def table_ground(robot: RobotModel, x: tuple[float, float], y: tuple[float, float]) -> Ground:
@@ -94,10 +103,9 @@ def table_ground(robot: RobotModel, x: tuple[float, float], y: tuple[float, floa
         x: Nearest and farthest edge of the table [m].
         y: Right and left edge of the table [m].
     """
-    slabs = [Slab("table", (x[0], y[0], -TABLE_THICKNESS), (x[1], y[1], 0.0), _TABLE_RGB)]
-    if robot.floor is not None:
-        floor = float(robot.pose_base_in_world.position[2]) + robot.floor
-        slabs.append(Slab(FLOOR, (-4.0, -4.0, floor - 0.1), (5.0, 4.0, floor), _FLOOR_RGB))
+    slabs = [Slab("table", (x[0], y[0], -TABLE_THICKNESS), (x[1], y[1], 0.0), _TABLE_RGB), *_floor(robot)]
+    if len(slabs) > 1:
+        floor = slabs[1].upper[2]
         inset = 0.04
         slabs += [
             Slab(
@@ -113,8 +121,20 @@ def table_ground(robot: RobotModel, x: tuple[float, float], y: tuple[float, floa
     return Ground(tuple(slabs))
 
 
+def _floor(robot: RobotModel) -> list[Slab]:
+    """The floor that a robot stands on, if it stands on one."""
+    if robot.floor is None:
+        return []
+    floor = float(robot.pose_base_in_world.position[2]) + robot.floor
+    return [Slab(FLOOR, (-4.0, -4.0, floor - 0.1), (5.0, 4.0, floor), _FLOOR_RGB)]
+
+
 TABLE_THICKNESS = 0.03
 """Thickness of the table's top [m]."""
+BOARD_EDGE = -0.05
+"""Where the board's table begins [m] if the robot stands before it,"""
+DRAWN_BACK = 0.30
+"""and how far back from its place at a table such a robot then stands [m]."""
 
 
 def _squares(parity: int) -> tuple[FloatArray, NDArray[np.int64]]:

@@ -48,9 +48,7 @@ class LiveCamera:
         """
         state = self._world.state()
         robot = robot_state(self._world.robot, state)
-        frame = self._renderer.render(
-            self._view.poses(robot, state.objects), self._view.camera_pose(self._name, robot)
-        )
+        frame = self._renderer.render(self._view.poses(robot, state.objects), self._view.camera_pose(self._name, robot))
         return frame if rng is None else kinect_noise(frame, rng, self.model)
 
     def close(self) -> None:

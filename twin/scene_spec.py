@@ -106,6 +106,8 @@ class SceneSpec(BaseModel):
     name: str = "board"
     kind: Literal["board", "table"] = "board"
     robot: str = "three_dof"
+    finger_mounting: Metres | None = None
+    """How far outwards on its carriage each sliding finger is mounted; None as the robot's file says."""
     objects: tuple[ObjectSpec, ...] = Field(default_factory=tuple)
     gripper_position: tuple[Metres, Metres, Metres] | None = None
     gripper_closed: bool = False

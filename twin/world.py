@@ -19,7 +19,7 @@ from robots.pose import FloatArray, Pose
 
 from .board import BLOCK
 from .errors import SceneError, TwinError
-from .ground import Ground, board_ground, table_ground
+from .ground import Ground, beside_board, board_ground, table_ground
 from .object_body import ObjectBody
 from .objects.model import ObjectModel
 from .physics import Physics
@@ -37,9 +37,10 @@ would stay asleep, in mid-air, when it is let go."""
 
 _VIEWS = {
     "board": ((-0.30, -0.44, 1.06), (0.12, 0.20, 0.30)),
+    "board from the front": ((1.35, -0.75, 1.05), (0.02, 0.20, 0.12)),
     "table": ((1.75, -1.35, 1.15), (0.38, 0.0, 0.05)),
 }
-"""Eye and the point looked at [m] of the overview camera, by kind of scene."""
+"""Eye and the point looked at [m] of the overview camera: a robot that stands on the floor would hide the board."""
 _FIELD_OF_VIEW = 52.0
 TABLE_X = (0.36, 1.06)
 """Nearest and farthest edge of a table [m]."""
@@ -95,7 +96,8 @@ class World:
             SceneError: The gripper cannot start where the scene says.
         """
         self.spec = spec
-        self.robot: RobotModel = load_robot(spec.robot)
+        robot = load_robot(spec.robot, finger_mounting=spec.finger_mounting)
+        self.robot: RobotModel = beside_board(robot) if spec.kind == "board" else robot
         self.ground: Ground = _ground(spec, self.robot)
         posture, tool = _start(spec, self.robot)
         self._number = next(_numbers)
@@ -283,9 +285,10 @@ class World:
         self._state = None
 
     def render(self, width: int, height: int) -> NDArray[np.uint8]:
-        """Picture from a fixed overview camera behind the robot's right shoulder: (height, width, 3), RGB.
+        """Picture from a fixed overview camera: (height, width, 3), RGB.
 
-        The board's left (+y) is on the left, its front (+x) in the distance.
+        The board is seen from behind the board arm's right shoulder: its left (+y) is on the left, its front (+x) in
+        the distance. A table, and robots that stand on the floor, are seen from the front.
 
         Raises:
             TwinError: A side is not in 1..4096 pixels.
@@ -294,7 +297,9 @@ class World:
         for side in (width, height):
             if not 1 <= side <= 4096:
                 raise TwinError(f"a picture's sides must be in 1..4096 pixels, got {width} x {height}")
-        return self._physics.picture(width, height, *_VIEWS[self.spec.kind], _FIELD_OF_VIEW)
+        front = self.spec.kind == "board" and self.robot.floor is not None
+        view = _VIEWS["board from the front" if front else self.spec.kind]
+        return self._physics.picture(width, height, *view, _FIELD_OF_VIEW)
 
     def _build(self, posture: FloatArray, tool: FloatArray) -> None:
         """Add ground, robot and objects, and let them settle."""
@@ -380,7 +385,7 @@ class World:
 
 def _ground(spec: SceneSpec, robot: RobotModel) -> Ground:
     """What a scene stands on."""
-    return board_ground() if spec.kind == "board" else table_ground(robot, TABLE_X, TABLE_Y)
+    return board_ground(robot) if spec.kind == "board" else table_ground(robot, TABLE_X, TABLE_Y)
 
 
 def _start(spec: SceneSpec, robot: RobotModel) -> tuple[FloatArray, FloatArray]:

@@ -94,7 +94,8 @@ def run(
             figures |= {f"{robot}.base_moves": len(off), f"{robot}.base_worst_off_mm": max(off)}
     settings = {
         "showtell": f"random free postures of all joints, planned with {1000 * MARGIN:g} mm to everything, limits "
-        f"checked at {1 / SAMPLE:.0f} Hz, contacts after every physics step, self-collision at {1 / SAMPLE / LOOK_EVERY:.0f} Hz"
+        f"checked at {1 / SAMPLE:.0f} Hz, contacts after every physics step, self-collision at "
+        f"{1 / SAMPLE / LOOK_EVERY:.0f} Hz"
     }
     return BenchReport(figures, settings=settings)
 

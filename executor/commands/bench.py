@@ -38,7 +38,10 @@ def kinematics(
     from executor.bench import kinematics as part
 
     out = Output(as_json)
-    _tell(out, "Inverse kinematics", part.run(seed, targets, robot or list(ROBOTS)), seed)
+    robots = robot or list(ROBOTS)
+    with out.progress("solving", len(robots) + robots.count("baxter")) as advance:
+        report = part.run(seed, targets, robots, advance)
+    _tell(out, "Inverse kinematics", report, seed)
 
 
 @app.command()

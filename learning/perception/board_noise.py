@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from learning.errors import PerceptionError
 from learning.perception.descriptors import board_descriptors
 from learning.perception.observation import Observation
 from robots.pose import FloatArray
-from twin.board import COLOURS_RGB
 from twin.scene_spec import ObjectSpec
 
 
@@ -63,13 +63,22 @@ def observed(
         objects: The N objects in the order of the tracks.
         rng: Source of the noise.
         noise: Its standard deviations.
+
+    Raises:
+        PerceptionError: An object is none of the board's.
     """
     frames, number = tracks.location.shape[:2]
-    looks = np.array([hsl(COLOURS_RGB[thing.colour]) for thing in objects]).reshape(number, 3)
+    descriptors = board_descriptors()
+    for thing in objects:
+        if thing.model is not None:
+            raise PerceptionError(
+                f"object {thing.id} is a {thing.shape} of a table scene, which only a camera sees; "
+                f"on the board there are {', '.join(descriptors)}"
+            )
+    looks = np.array([hsl(thing.rgb) for thing in objects]).reshape(number, 3)
     colour = looks + rng.normal(0.0, noise.lighting, 3) + rng.normal(0.0, noise.colour, (frames, number, 3))
     colour[..., 0] %= 1.0
     np.clip(colour[..., 1:], 0.0, 1.0, out=colour[..., 1:])
-    descriptors = board_descriptors()
     shape = np.array([descriptors[thing.shape] for thing in objects]).reshape(number, 33)
     shape = np.maximum(shape * (1.0 + rng.normal(0.0, noise.shape, (frames, number, 33))), 0.0)
     return Observation(
