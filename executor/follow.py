@@ -27,12 +27,13 @@ def follow(world: World, trajectory: Trajectory, joints: slice, openings: Sequen
         joints: Which of the robot's joints these are.
         openings: Gap of each arm's fingers meanwhile [m].
     """
+    gaps = tuple(openings)  # who keeps a command must not see it change
     count = int(np.ceil(trajectory.duration / World.DT - 1e-9))
     for step in range(1, count + 1):
         wanted, _, _ = trajectory.at(min(step * World.DT, trajectory.duration))
         velocity: FloatArray = np.zeros(len(world.robot.joint_names))
         velocity[joints] = (wanted - world.commanded_positions[joints]) / World.DT
-        world.step(JointCommand(velocity, openings))
+        world.step(JointCommand(velocity, gaps))
 
 
 def follow_base(
@@ -55,7 +56,7 @@ def follow_base(
     Raises:
         TwinError: The robot has no wheels.
     """
-    still = np.zeros(len(world.robot.joint_names))
+    still, gaps = np.zeros(len(world.robot.joint_names)), tuple(openings)
     count = int(np.ceil((trajectory.duration + SETTLE) / World.DT))
     for step in range(1, count + 1):
         wanted, twist, _ = trajectory.at(min(step * World.DT, trajectory.duration))
@@ -66,9 +67,9 @@ def follow_base(
         turned = float(np.remainder(wanted[2] - yaw + np.pi, 2 * np.pi) - np.pi)
         speed, turn = float(twist[0]), float(twist[1])
         command = (speed + ALONG * ahead, turn + TURNING * turned + BESIDE * speed * across)
-        world.step(JointCommand(still, openings, command))
+        world.step(JointCommand(still, gaps, command))
         each_step()
-    world.step(JointCommand(still, openings))
+    world.step(JointCommand(still, gaps))
 
 
 def base_pose(world: World) -> tuple[float, float, float]:
@@ -80,6 +81,6 @@ def base_pose(world: World) -> tuple[float, float, float]:
 
 def wait(world: World, seconds: float, openings: Sequence[float]) -> None:
     """Stand still for a time [s] with the fingers told to make these gaps [m]."""
-    still = JointCommand(np.zeros(len(world.robot.joint_names)), openings)
+    still = JointCommand(np.zeros(len(world.robot.joint_names)), tuple(openings))
     for _ in range(round(seconds / World.DT)):
         world.step(still)

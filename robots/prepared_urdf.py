@@ -19,9 +19,12 @@ import numpy as np
 from .errors import RobotError
 from .hulls import convex_pieces
 from .kinematics import rpy_matrix
-from .meshes import decimated, find, resolve
+from .meshes import DEFAULT_TRIANGLES, decimated, find, resolve
 from .robot_file import RobotFile
 from .urdf import read_urdf
+
+BYTES_A_TRIANGLE = 2500
+"""Size of a mesh file for which one triangle is kept."""
 
 
 def prepare_urdf(folder: Path, spec: RobotFile) -> Path:
@@ -94,13 +97,18 @@ def _find_meshes(root: ElementTree.Element, source: Path) -> bool:
                 found = True
                 file = resolve(mesh.get("filename", ""), source, name)
                 if kind == "visual":
-                    mesh.set("filename", str(decimated(file)))
+                    mesh.set("filename", str(decimated(file, _triangles(file))))
                     continue
                 for piece in convex_pieces(file):
                     mesh.set("filename", str(piece))
                     link.append(deepcopy(element))
                 link.remove(element)
     return found
+
+
+def _triangles(mesh: Path) -> int:
+    """Triangles worth drawing of a mesh: more of a large file, such as Baxter's pedestal with all its castors."""
+    return max(DEFAULT_TRIANGLES, min(3000, mesh.stat().st_size // BYTES_A_TRIANGLE))
 
 
 def _mount_fingers(root: ElementTree.Element, source: Path, spec: RobotFile) -> bool:
@@ -123,21 +131,14 @@ def _mount_fingers(root: ElementTree.Element, source: Path, spec: RobotFile) -> 
             if origin is None:
                 origin = ElementTree.SubElement(joint, "origin")
             axis = joint.find("axis")
-            where = f"{source}: joint {name}"
-            along = np.array(_three("1 0 0" if axis is None else axis.get("xyz", "1 0 0"), f"{where}: axis"))
+            along = np.array(_numbers("1 0 0" if axis is None else axis.get("xyz", "1 0 0")))
             outwards = np.sign(opened[index] - closed[index]) * along / np.linalg.norm(along)
-            turned = rpy_matrix(_three(origin.get("rpy", "0 0 0"), f"{where}: rpy")) @ outwards
-            place = np.array(_three(origin.get("xyz", "0 0 0"), f"{where}: xyz")) + gripper.mounting * turned
+            turned = rpy_matrix(_numbers(origin.get("rpy", "0 0 0"))) @ outwards
+            place = np.array(_numbers(origin.get("xyz", "0 0 0"))) + gripper.mounting * turned
             origin.set("xyz", " ".join(f"{value:.9g}" for value in place))
             shifted = True
     return shifted
 
 
-def _three(text: str, where: str) -> list[float]:
-    try:
-        numbers = [float(part) for part in text.split()]
-    except ValueError:
-        numbers = []
-    if len(numbers) != 3 or not np.isfinite(numbers).all():
-        raise RobotError(f"{where} must be three finite numbers, got {text!r}")
-    return numbers
+def _numbers(text: str) -> list[float]:
+    return [float(part) for part in text.split()]

@@ -25,7 +25,8 @@ def make_gripper(arm: ArmSection, urdf: Urdf, urdf_path: Path, toml: Path) -> Gr
     closed = np.array(spec.closed or (0.0, 0.0))
     opened = _open_positions(spec, closed)
     if np.any(opened == closed):
-        raise RobotError(f"{toml}: arms.gripper.open: each finger must move, got {spec.open} from {tuple(closed)}")
+        way = f"{tuple(opened.tolist())} from {tuple(closed.tolist())}"
+        raise RobotError(f"{toml}: arms.gripper.open: each finger must move, got {way}")
     if spec.pads is None:
         ways = np.array([0.0, 1.0])
         closed_gap = spec.closed_gap + 2.0 * spec.mounting

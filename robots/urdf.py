@@ -1,13 +1,12 @@
-"""What we read from a URDF ourselves: movable joints, links, and whether physics can work with it."""
+"""What we read from a URDF ourselves: movable joints and links."""
 
 import math
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from .errors import RobotError
+from .urdf_check import MOVABLE, check_urdf, end_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +52,7 @@ def read_urdf(path: Path) -> Urdf:
     """Read joints and links of a URDF.
 
     Raises:
-        RobotError: The file is missing, is not XML, or a number is not one; names file and joint.
+        RobotError: The file is missing, is not XML, or is wrong; names file, joint or link, and value.
     """
     try:
         root = ElementTree.parse(path).getroot()
@@ -64,65 +63,15 @@ def read_urdf(path: Path) -> Urdf:
     if root.tag != "robot":
         raise RobotError(f"{path}: the outermost element must be <robot>, got <{root.tag}>")
     links = tuple(link.get("name", "") for link in root.findall("link"))
-    joints = {}
-    carried = set()
-    for element in root.findall("joint"):
-        for end in ("parent", "child"):
-            if (link := _child_text(element, end)) not in links:
-                raise RobotError(
-                    f"{path}: joint {element.get('name')}: {end} link {link!r} is not in the file; "
-                    f"it has {', '.join(links)}"
-                )
-        if element.get("type") in ("revolute", "prismatic", "continuous"):
-            joint = _read_joint(element, path)
-            joints[joint.name] = joint
-            carried.add(_child_text(element, "child"))
+    check_urdf(root, path)
+    joints = {
+        joint.name: joint
+        for joint in (_read_joint(each, path) for each in root.findall("joint") if each.get("type") in MOVABLE)
+    }
     for joint in joints.values():
         if joint.mimic is not None and joint.mimic.source not in joints:
             raise RobotError(f"{path}: joint {joint.name}: mimics {joint.mimic.source!r}, which is no movable joint")
-    for body in root.findall("link"):
-        _check_inertia(body, path, body.get("name", "") in carried)
     return Urdf(joints, links)
-
-
-def _child_text(joint: ElementTree.Element, end: str) -> str:
-    """Name of the link at one end of a joint."""
-    found = joint.find(end)
-    return "" if found is None else found.get("link", "")
-
-
-def _check_inertia(link: ElementTree.Element, path: Path, moves: bool) -> None:
-    """Check that physics can work with a link's mass and inertia.
-
-    A frame that is fixed to another link may weigh nothing; what a joint carries may not, and nothing weighs less.
-
-    Raises:
-        RobotError: Names file, link and value.
-    """
-    name = link.get("name", "")
-    inertial = link.find("inertial")
-    if inertial is None:
-        return
-    values = {}
-    for tag, keys in (("mass", ("value",)), ("inertia", ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"))):
-        element = inertial.find(tag)
-        for key in keys:
-            text = "0" if element is None else element.get(key, "0")
-            try:
-                values[key] = float(text)
-            except ValueError as error:
-                raise RobotError(f"{path}: link {name}: {key} must be a number, got {text!r}") from error
-            if not math.isfinite(values[key]):
-                raise RobotError(f"{path}: link {name}: {key} must be finite, got {text!r}")
-    if values["value"] < 0 or (moves and values["value"] == 0):
-        raise RobotError(f"{path}: link {name}: mass must be positive, got {values['value']:g} kg")
-    xx, yy, zz, xy, xz, yz = (values[key] for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"))
-    moments = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    if moments[0] < -1e-12 or (moves and moments[0] <= 0):
-        raise RobotError(
-            f"{path}: link {name}: the inertia's principal moments must be positive, "
-            f"got {', '.join(f'{moment:.3g}' for moment in moments)} kg m²"
-        )
 
 
 def _read_joint(element: ElementTree.Element, path: Path) -> UrdfJoint:
@@ -152,4 +101,4 @@ def _read_joint(element: ElementTree.Element, path: Path) -> UrdfJoint:
     if mimic is not None:
         ratio, offset = number(mimic, "multiplier", 1.0), number(mimic, "offset", 0.0)
         followed = Mimic(name, mimic.get("joint", ""), ratio, offset, lower, upper)
-    return UrdfJoint(name, _child_text(element, "child"), lower, upper, number(limit, "velocity", math.inf), followed)
+    return UrdfJoint(name, end_of(element, "child"), lower, upper, number(limit, "velocity", math.inf), followed)

@@ -48,8 +48,9 @@ def first_problem(error: ValidationError, source: str, model: type[BaseModel]) -
     if problem["type"] == "extra_forbidden":
         return f"{source}: {key}: unknown key; allowed keys here are {', '.join(_keys_at(model, problem['loc'][:-1]))}"
     message = problem["msg"].removeprefix("Value error, ")
-    if problem["type"] == "value_error" and not problem["loc"]:
-        return f"{source}: {message}"
+    if problem["type"] == "value_error" and isinstance(problem["input"], dict):
+        # A whole table is wrong; its message says which values are.
+        return f"{source}: {key}: {message}" if problem["loc"] else f"{source}: {message}"
     return f"{source}: {key}: {message}; got {_short(problem['input'])}"
 
 

@@ -6,8 +6,8 @@
   snaps or sticks. Worlds are deterministic and share nothing.
 - `SceneSpec` and `ObjectSpec` say what a scene is made of, from code, a TOML file (`read_scene`) or a seed
   (`random_board`); `twin.objects` has the objects.
-- `twin.grasp_poses` proposes where a gripper can hold an object, `SlipMonitor` tells whether it slips; an `ArmState` has the
-  forces felt at the wrist.
+- `twin.grasp_poses` proposes where a gripper can hold an object, `SlipMonitor` tells whether it slips; an `ArmState`
+  has the forces felt at the wrist.
 - `LiveCamera` is a camera that the robot carries; `SceneView` tells what cameras see of a recorded state, for the
   renderers of `twin.camera`, in other processes too.
 - `board` holds the geometry of the 8 x 8 board; `TwinError` and `SceneError` are this package's errors.

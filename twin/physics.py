@@ -6,6 +6,7 @@ PyBullet's default client is global to the process; nothing here ever uses it, s
 import math
 import weakref
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +29,29 @@ CONTACT_MARGIN = 0.002
 other awake. Bullet has one such number for the whole process; all our clients set the same."""
 HULL_MARGIN = 0.001
 """Bullet puts this much [m] around a convex hull; ours are made smaller by as much, so that their surface is true."""
+FAR = 100.0
+"""Distance [m] at which nothing is near anything."""
 SLEEP_BELOW = 1e-4
 """Bodies whose squared speed stays below this for two seconds sleep: 10 mm/s or 10 mrad/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactForce:
+    """What acts on a body at one point of contact.
+
+    Attributes:
+        link: Link of the body.
+        other: The body that pushes.
+        other_link: Its link.
+        point: Where, (3,) [m].
+        force: Normal and friction force on the body, (3,) [N].
+    """
+
+    link: int
+    other: int
+    other_link: int
+    point: NDArray[np.float64]
+    force: NDArray[np.float64]
 
 
 class Physics:
@@ -45,6 +67,8 @@ class Physics:
         if self._client < 0:
             raise TwinError("PyBullet gives no further client: close worlds that are no longer used")
         self._closer = weakref.finalize(self, _disconnect, self._client)
+        self.time_step = time_step
+        self._robots: set[int] = set()
         # The default broadphase forgets distant pairs one by one in a rotation that no saved state holds, so that a
         # restored world would drift from the first one by micrometres. For fifty bodies the simple one is as fast.
         pybullet.resetSimulation(pybullet.RESET_USE_SIMPLE_BROADPHASE, physicsClientId=self._client)
@@ -195,7 +219,7 @@ class Physics:
             TwinError: PyBullet cannot load it.
         """
         try:
-            return int(
+            body = int(
                 pybullet.loadURDF(
                     str(urdf),
                     pose[0],
@@ -207,6 +231,8 @@ class Physics:
             )
         except pybullet.error as error:
             raise TwinError(f"{urdf}: PyBullet cannot load it: {error}") from error
+        self._robots.add(body)
+        return body
 
     def set_friction(
         self,
@@ -315,12 +341,12 @@ class Physics:
         """Take a constraint away."""
         pybullet.removeConstraint(constraint, physicsClientId=self._client)
 
-    def base_velocity(self, body: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Linear [m/s] and angular [rad/s] velocity of a body's base in the world."""
-        velocity: tuple[tuple[float, ...], tuple[float, ...]] = pybullet.getBaseVelocity(
-            body, physicsClientId=self._client
-        )
-        return velocity
+    def base_twist(self, body: int) -> NDArray[np.float64]:
+        """Velocity of a body's base frame (that of the URDF), (6,): linear [m/s], angular [rad/s], world's axes."""
+        (vx, vy, vz), (wx, wy, wz) = pybullet.getBaseVelocity(body, physicsClientId=self._client)
+        # That is of the centre of mass.
+        x, y, z = (a - b for a, b in zip(self.base_frame(body)[0], self.base_pose(body)[0], strict=True))
+        return np.array([vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x, wx, wy, wz])
 
     def gear(self, body: int, first: int, second: int, ratio: float, force: float) -> None:
         """Couple two joints: the velocity of the first plus `ratio` times that of the second stays 0."""
@@ -378,22 +404,6 @@ class Physics:
             physicsClientId=self._client,
         )
 
-    def sense_force(self, body: int, joint: int) -> None:
-        """Measure the force in a joint from now on."""
-        pybullet.enableJointForceTorqueSensor(body, joint, True, physicsClientId=self._client)
-
-    def joint_wrench(self, body: int, joint: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Force [N] and torque [Nm] in a joint in the last step, (3,) each, along the axes of the world.
-
-        The torque is about the joint. PyBullet's is about the centre of mass of the carried link, and both of its
-        vectors are along the axes of that link's inertia.
-        """
-        wrench = pybullet.getJointState(body, joint, physicsClientId=self._client)[2]
-        mass_centre, axes, _, _, frame, *_ = pybullet.getLinkState(body, joint, physicsClientId=self._client)
-        turn = np.reshape(pybullet.getMatrixFromQuaternion(axes, physicsClientId=self._client), (3, 3))
-        force, torque = turn @ wrench[:3], turn @ wrench[3:]
-        return force, torque + np.cross(np.subtract(mass_centre, frame), force)
-
     def joint_states(self, body: int, joints: list[int]) -> list[tuple[float, float, float]]:
         """Position, velocity and the motor's effort of each joint."""
         states = pybullet.getJointStates(body, joints, physicsClientId=self._client)
@@ -429,6 +439,29 @@ class Physics:
         points = pybullet.getContactPoints(bodyA=body, physicsClientId=self._client)
         return {point[2] for point in points if point[8] <= within}
 
+    def contact_forces(self, body: int) -> list[ContactForce]:
+        """What pushes on a body, as of the last step. Torques of spinning and rolling friction are left out."""
+        points = pybullet.getContactPoints(bodyA=body, physicsClientId=self._client)
+        return [
+            ContactForce(
+                link=point[3],
+                other=point[2],
+                other_link=point[4],
+                point=np.array(point[5]),
+                force=point[9] * np.array(point[7]) + point[10] * np.array(point[11]) + point[12] * np.array(point[13]),
+            )
+            for point in points
+            if point[9] > 0.0
+        ]
+
+    def mass_of(self, body: int) -> tuple[float, RawPose, tuple[float, float, float]]:
+        """Mass [kg] of a body without joints, its centre of mass and principal axes in the world, and moments.
+
+        A body that stands still for ever has mass 0.
+        """
+        mass, _, moments, *_ = pybullet.getDynamicsInfo(body, -1, physicsClientId=self._client)
+        return float(mass), self.base_pose(body), moments
+
     # Time
 
     def step(self) -> None:
@@ -440,8 +473,25 @@ class Physics:
         return int(pybullet.saveState(physicsClientId=self._client))
 
     def restore(self, state: int) -> None:
-        """Go back to a kept state. Motor targets are not part of it."""
+        """Go back to a kept state. Motor targets are not part of it.
+
+        Bullet remembers contacts by pairs of their parts, but gives back those of only one pair for each two bodies;
+        those of the others stay as they are. So all are forgotten first, by moving everything apart: else what comes
+        after would depend on what was before.
+        """
+        count = pybullet.getNumBodies(physicsClientId=self._client)
+        bodies = [pybullet.getBodyUniqueId(number, physicsClientId=self._client) for number in range(count)]
+        others = [body for body in bodies if body not in self._robots]
+        poses = [self.base_pose(body) for body in others]
+        for number, (body, (_, orientation)) in enumerate(zip(others, poses, strict=True)):
+            self._put(body, ((FAR * (number + 1), FAR, 0.0), orientation))
+        pybullet.performCollisionDetection(physicsClientId=self._client)
+        for body, pose in zip(others, poses, strict=True):
+            self._put(body, pose)  # what stands still for ever is not part of a state
         pybullet.restoreState(stateId=state, physicsClientId=self._client)
+
+    def _put(self, body: int, pose: RawPose) -> None:
+        pybullet.resetBasePositionAndOrientation(body, *pose, physicsClientId=self._client)
 
     def forget(self, state: int) -> None:
         """Free a kept state."""

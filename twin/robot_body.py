@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.arm_model import ArmModel
+from robots.hand_dynamics import HandDynamics, Load
+from robots.kinematics import rotation_matrix
 from robots.model import RobotModel
 from robots.pose import FloatArray, Pose
 
@@ -41,8 +43,29 @@ class _Hand:
     finger_links: tuple[list[int], list[int]]
     passive: list[tuple[int, int, int]]  # joint, source finger (0 or 1), index into the robot's finger mimics
     tool: int
-    wrist: int
+    links: frozenset[int]  # all behind the last joint
     opening: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class RobotMemory:
+    """What a saved state of physics lacks.
+
+    Attributes:
+        target: Joint targets, (n,) [rad].
+        openings: Commanded gap between the fingers of each arm [m].
+        parked: Whether the base's parking brake was on.
+        standing: Time for which the base was told to stand [s].
+        efforts: Of all driven joints, then fingers, in the last step [Nm or N].
+        wrist_wrenches: What each arm's wrist felt then, (6,) [N, Nm].
+    """
+
+    target: tuple[float, ...]
+    openings: tuple[float, ...]
+    parked: bool
+    standing: float
+    efforts: tuple[float, ...]
+    wrist_wrenches: tuple[FloatArray, ...]
 
 
 class RobotBody:
@@ -89,6 +112,11 @@ class RobotBody:
             physics.drive(self.body, [joints[name]], [position], [DEFAULT_FORCE])
         self.target = robot.home.tolist()
         self._states: list[tuple[float, float, float]] = []
+        self._before: list[tuple[float, float, float]] = []
+        self._twist = self._twist_before = np.zeros(6)
+        self._dynamics = HandDynamics(robot)
+        self._sensed_names = [*robot.joint_names, *(name for arm in robot.arms.values() for name in arm.gripper.joints)]
+        self._wrenches: tuple[FloatArray, ...] | None = None
 
     def _hand(self, arm: ArmModel, joints: dict[str, int], links: dict[str, int]) -> _Hand:
         physics, gripper = self._physics, arm.gripper
@@ -105,9 +133,8 @@ class RobotBody:
             if each.source in gripper.joints
         ]
         tool = links[arm.tool_frame]
-        wrist = physics.moving_joint_of(self.body, tool)
-        physics.sense_force(self.body, wrist)
-        return _Hand(arm, fingers, finger_links, passive, tool, wrist, gripper.max_opening)
+        behind = frozenset(physics.links_behind(self.body, physics.moving_joint_of(self.body, tool)))
+        return _Hand(arm, fingers, finger_links, passive, tool, behind, gripper.max_opening)
 
     @property
     def openings(self) -> tuple[float, ...]:
@@ -119,14 +146,30 @@ class RobotBody:
         gaps = {hand.arm.name: opening for hand, opening in zip(self._hands, openings, strict=True)}
         for name, position in self.robot.expand(q, gaps).items():
             self._physics.reset_joint(self.body, self._joints[name], position)
-        self.resume(q.tolist(), commanded)
+        self._resume(q.tolist(), commanded)
 
-    def resume(self, target: Sequence[float], openings: Sequence[float]) -> None:
-        """Take up motor targets again, when placed or after physics was restored."""
+    def memory(self) -> RobotMemory:
+        """What physics does not keep when its state is saved."""
+        efforts = tuple(effort for _, _, effort in self._states)
+        return RobotMemory(
+            tuple(self.target), self.openings, self.parked, self._standing, efforts, self._all_wrist_wrenches()
+        )
+
+    def resume(self, memory: RobotMemory) -> None:
+        """Take up what was going on, after physics was restored; the brake is put on by then."""
+        self._resume(memory.target, memory.openings)
+        self._standing = memory.standing
+        self._states = [
+            (position, speed, effort) for (position, speed, _), effort in zip(self._states, memory.efforts, strict=True)
+        ]
+        self._wrenches = memory.wrist_wrenches
+
+    def _resume(self, target: Sequence[float], openings: Sequence[float]) -> None:
         self.target = list(target)
         for hand, opening in zip(self._hands, openings, strict=True):
             hand.opening = opening
         self.sense()
+        self.sense()  # nothing has happened in between
         self._drive()
         for number in range(len(self._hands)):
             self._drive_fingers(number)
@@ -165,7 +208,10 @@ class RobotBody:
 
     def sense(self) -> None:
         """Read the joints; after every step."""
-        self._states = self._physics.joint_states(self.body, self._sensed)
+        self._before, self._states = self._states, self._physics.joint_states(self.body, self._sensed)
+        if self._wheels:
+            self._twist_before, self._twist = self._twist, self._physics.base_twist(self.body)
+        self._wrenches = None
 
     @property
     def q(self) -> FloatArray:
@@ -202,7 +248,40 @@ class RobotBody:
 
         The torque is about the joint. A hand at rest shows its weight, downwards.
         """
-        return -np.concatenate(self._physics.joint_wrench(self.body, self._hands[number].wrist))
+        return self._all_wrist_wrenches()[number]
+
+    def _all_wrist_wrenches(self) -> tuple[FloatArray, ...]:
+        """Computed when asked for. What Bullet measures itself leaves out the force that couples the fingers."""
+        if self._wrenches is None:
+            step = self._physics.time_step
+            joints = {
+                name: (now[0], now[1], (now[1] - before[1]) / step)
+                for name, now, before in zip(self._sensed_names, self._states, self._before, strict=True)
+            }
+            self._dynamics.move(joints, self.base(), self._twist, (self._twist - self._twist_before) / step)
+            self._wrenches = tuple([self._wrist_wrench(number) for number in range(len(self._hands))])
+        return self._wrenches
+
+    def _wrist_wrench(self, number: int) -> FloatArray:
+        """What is held moves with the hand, so that its own weight counts, and what else touches it."""
+        hand, physics = self._hands[number], self._physics
+        loads, held = [], set()
+        for body in self.between_fingers(number):
+            mass, (centre, axes), moments = physics.mass_of(body)
+            if mass > 0.0:
+                turn = rotation_matrix(np.array(axes))
+                loads.append(Load(mass, np.array(centre), turn @ np.diag(moments) @ turn.T))
+                held.add(body)
+        pushes = [
+            each for each in physics.contact_forces(self.body) if each.link in hand.links and each.other not in held
+        ]
+        for body in held:
+            pushes += [
+                each
+                for each in physics.contact_forces(body)
+                if not (each.other == self.body and each.other_link in hand.links)
+            ]
+        return self._dynamics.wrench(hand.arm.name, loads, [(each.point, each.force) for each in pushes])
 
     def base(self) -> Pose:
         """Pose of the base frame in the world."""

@@ -23,7 +23,7 @@ from .ground import Ground, beside_board, board_ground, table_ground
 from .object_body import ObjectBody
 from .objects.model import ObjectModel
 from .physics import Physics
-from .robot_body import RobotBody
+from .robot_body import RobotBody, RobotMemory
 from .scene_spec import SceneSpec
 from .scenes import resolve_scene
 from .state import ArmState, JointCommand, WorldState
@@ -59,17 +59,13 @@ class Snapshot:
         owner: Number of the world it belongs to.
         physics_state: Number of the state that the physics client keeps.
         steps: Steps since the world started.
-        target: Joint targets, (n,) [rad].
-        openings: Commanded gap between the fingers of each arm [m].
-        parked: Whether the base's parking brake was on.
+        robot: What that state lacks of the robot.
     """
 
     owner: int
     physics_state: int
     steps: int
-    target: tuple[float, ...]
-    openings: tuple[float, ...]
-    parked: bool
+    robot: RobotMemory
 
 
 class World:
@@ -255,9 +251,7 @@ class World:
         """
         self._physics_open()
         number = self._physics.save()
-        snapshot = Snapshot(
-            self._number, number, self._steps, tuple(self._robot.target), self._robot.openings, self._robot.parked
-        )
+        snapshot = Snapshot(self._number, number, self._steps, self._robot.memory())
         weakref.finalize(snapshot, self._physics.forget, number)
         self.restore(snapshot)
         return snapshot
@@ -273,7 +267,7 @@ class World:
             raise TwinError("this snapshot is another world's: restore it in the world that made it")
         self._robot.unpark()  # the brake holds where it was put on
         self._physics.restore(snapshot.physics_state)
-        if snapshot.parked:
+        if snapshot.robot.parked:
             self._robot.park()
         self._wake_all()
         # A woken block takes part in physics one step later, so we take a step and undo it.
@@ -281,7 +275,7 @@ class World:
         self._physics.restore(snapshot.physics_state)
         self._wake_all()
         self._steps = snapshot.steps
-        self._robot.resume(snapshot.target, snapshot.openings)
+        self._robot.resume(snapshot.robot)
         self._state = None
 
     def render(self, width: int, height: int) -> NDArray[np.uint8]:
@@ -400,6 +394,10 @@ def _start(spec: SceneSpec, robot: RobotModel) -> tuple[FloatArray, FloatArray]:
         return robot.home, arm.forward_kinematics(home).position
     tool = np.array(spec.gripper_position)
     found = arm.inverse_kinematics(tool, start=home, tolerance=1e-6)
+    if len(home) >= 6:  # the hand points as at home, where that is in reach
+        upright = Pose(tool, arm.forward_kinematics(home).orientation_xyzw)
+        better = arm.inverse_kinematics(upright, start=home, posture=home, tolerance=1e-6)
+        found = better if better.success else found
     if not found.success:
         raise SceneError(
             f"scene {spec.name!r}: gripper_position {spec.gripper_position} is out of {robot.name}'s reach by "

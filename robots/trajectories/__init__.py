@@ -7,7 +7,6 @@ Nothing here knows a robot: limits are arrays, kinematics and geometry are funct
   which `check_limits` measures.
 - `plan_path` and `plan_motion` ask `is_free` whether a posture touches something and go around with OMPL if need be;
   `plan_together` does so for several arms at once. `drive_base` brings a wheeled base to a pose.
-- `random_moves` measures many of them.
 
 Ruckig, SciPy and OMPL load when they are first used.
 """
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from .joints import JointTrajectory, move_joints
     from .limits import JointLimits
     from .motion import MotionPlan, plan_motion
-    from .moves_report import MovesReport, random_moves
     from .path_trajectory import PathTrajectory, follow_waypoints
     from .planning import PlanResult, plan_path
     from .straight import StraightMotion, move_straight
@@ -40,7 +38,6 @@ _WHERE = {
     "LimitReport": "trajectory",
     "MotionError": "errors",
     "MotionPlan": "motion",
-    "MovesReport": "moves_report",
     "PathTrajectory": "path_trajectory",
     "PlanResult": "planning",
     "Samples": "trajectory",
@@ -55,7 +52,6 @@ _WHERE = {
     "plan_motion": "motion",
     "plan_path": "planning",
     "plan_together": "together",
-    "random_moves": "moves_report",
 }
 
 __all__ = [
@@ -68,7 +64,6 @@ __all__ = [
     "LimitReport",
     "MotionError",
     "MotionPlan",
-    "MovesReport",
     "PathTrajectory",
     "PlanResult",
     "Samples",
@@ -83,7 +78,6 @@ __all__ = [
     "plan_motion",
     "plan_path",
     "plan_together",
-    "random_moves",
 ]
 
 

@@ -1,13 +1,13 @@
 """Motion of a wheeled base: turns on the spot and straight drives, which two wheels can do without slipping."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
 from robots.pose import FloatArray, read_only
 
-from .errors import MotionError
+from .errors import check_positive
 from .joints import JointTrajectory
 from .limits import JointLimits
 from .trajectory import sample_times
@@ -39,10 +39,7 @@ class BaseLimits:
         Raises:
             MotionError: A limit is not positive and finite.
         """
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not value > 0 or not math.isfinite(value):
-                raise MotionError(f"base limit {field.name} must be positive and finite; got {value}")
+        check_positive("base", asdict(self))
 
     @property
     def drive(self) -> JointLimits:

@@ -1,9 +1,8 @@
 """Limits of a tool along a straight line."""
 
-import math
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass
 
-from .errors import MotionError
+from .errors import check_positive
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +31,4 @@ class ToolLimits:
         Raises:
             MotionError: A limit is not positive and finite.
         """
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not value > 0 or not math.isfinite(value):
-                raise MotionError(f"tool limit {field.name} must be positive and finite; got {value}")
+        check_positive("tool", asdict(self))

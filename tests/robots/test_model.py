@@ -27,6 +27,13 @@ def random_postures(arm: RobotModel, count: int, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).uniform(lower, upper, (count, arm.lower.size))
 
 
+def assert_same(here: Pose, there: Pose) -> None:
+    """PyBullet computes in double but reads the URDF's numbers with its own rounding, and turns in single precision."""
+    np.testing.assert_allclose(here.position, there.position, atol=1e-6)
+    turns = [rotation_matrix(pose.orientation_xyzw) for pose in (here, there)]
+    np.testing.assert_allclose(turns[0], turns[1], atol=1e-6)
+
+
 @pytest.mark.parametrize("turn", [False, True], ids=["in its place", "elsewhere"])
 @pytest.mark.parametrize("name", list_robots())
 def test_forward_kinematics_agrees_with_pybullet(name: str, turn: bool) -> None:
@@ -38,9 +45,7 @@ def test_forward_kinematics_agrees_with_pybullet(name: str, turn: bool) -> None:
             bullet.place(robot.expand(q))
             for arm in robot.arms.values():
                 pose, there = arm.forward_kinematics(q[robot.slice_of(arm.name)]), bullet.frame(arm.tool_frame)
-                # PyBullet computes in double but reads the URDF's numbers with its own rounding.
-                np.testing.assert_allclose(pose.position, there.position, atol=1e-6)
-                assert abs(np.dot(pose.orientation_xyzw, there.orientation_xyzw)) == pytest.approx(1.0, abs=1e-9)
+                assert_same(pose, there)
 
 
 @pytest.mark.parametrize("name", list_robots())
@@ -54,9 +59,8 @@ def test_every_link_is_where_pybullet_has_it_fingers_and_passive_joints_too(name
             bullet.place(joints)
             for link in bullet.links:
                 there, here = bullet.frame(link), frame_pose(robot.urdf_path, joints, link)
-                position = robot.pose_base_in_world.position + here.position  # none of ours stands turned
-                np.testing.assert_allclose(position, there.position, atol=1e-6)
-                assert abs(np.dot(here.orientation_xyzw, there.orientation_xyzw)) == pytest.approx(1.0, abs=1e-9)
+                # None of ours stands turned.
+                assert_same(Pose(robot.pose_base_in_world.position + here.position, here.orientation_xyzw), there)
 
 
 def test_fingers_mounted_wider_are_where_pybullet_has_them() -> None:

@@ -14,7 +14,6 @@ from robots.trajectories import (
     plan_motion,
     plan_path,
     plan_together,
-    random_moves,
 )
 from robots.trajectories.free_space import FreeSpace
 
@@ -233,12 +232,3 @@ def test_arms_that_do_not_fit_their_limits_are_refused() -> None:
     assert not motion.success
     assert motion.reason == "start is in collision"
     assert motion.trajectories == ()
-
-
-def test_random_moves_are_measured() -> None:
-    report = random_moves(ARM, past_the_wall, 25, np.random.default_rng(0), START, lambda q: past_the_wall(q, 0.0))
-    assert report.moves == 25
-    assert report.failures == ()
-    assert report.touching == 0
-    assert 0 < report.around < 25
-    assert 0.9 < report.worst.worst <= 1 + 1e-9
