@@ -8,13 +8,16 @@ WORKERS ?= 2
 
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test lint bench install clean
+.PHONY: demo test slow lint bench install clean
 
 demo: install
 	$(BIN)/showtell demo
 
 test: lint
 	$(BIN)/python -m pytest -n $(WORKERS)
+
+slow: install
+	$(BIN)/python -m pytest -m slow -n $(WORKERS)
 
 lint: install
 	$(BIN)/ruff check .

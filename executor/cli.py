@@ -8,7 +8,20 @@ from typing import Annotated
 
 import typer
 
-from executor.commands import bench, demo, demos, do, evaluate, import_demos, inspect, learn, record, replay, robots
+from executor.commands import (
+    bench,
+    demo,
+    demos,
+    devices,
+    do,
+    evaluate,
+    import_demos,
+    inspect,
+    learn,
+    record,
+    replay,
+    robots,
+)
 from executor.commands.output import ShowtellGroup
 
 app = typer.Typer(
@@ -52,6 +65,7 @@ inspect.add_to(app)
 do.add_to(app)
 app.add_typer(evaluate.app, name="evaluate")
 app.add_typer(bench.app, name="bench")
+devices.add_to(app)
 robots.add_to(app)
 
 

@@ -11,11 +11,19 @@ from twin import JointCommand, World
 
 ALONG, BESIDE, TURNING = 2.0, 6.0, 3.0
 """Gains of the base's correction: per second along the way, per square metre beside it, per second of turning."""
+STOP = 0.03
+"""Time [s] in which a motion that is stopped comes to rest."""
 SETTLE = 0.6
 """Time [s] at the end in which the base comes to its goal."""
 
 
-def follow(world: World, trajectory: Trajectory, joints: slice, openings: Sequence[float]) -> None:
+def follow(
+    world: World,
+    trajectory: Trajectory,
+    joints: slice,
+    openings: Sequence[float],
+    until: Callable[[], bool] | None = None,
+) -> bool:
     """Drive some joints along a trajectory; the others stay.
 
     The drives integrate commanded velocities, so that each step is told the way to the trajectory's next point from
@@ -26,14 +34,25 @@ def follow(world: World, trajectory: Trajectory, joints: slice, openings: Sequen
         trajectory: Of the joints that move, from where they are.
         joints: Which of the robot's joints these are.
         openings: Gap of each arm's fingers meanwhile [m].
+        until: Asked after each step whether to stop; then the trajectory is slowed down to rest within `STOP`, which
+            only slow ones can be within limits of acceleration.
+
+    Returns:
+        Whether it was stopped.
     """
     gaps = tuple(openings)  # who keeps a command must not see it change
-    count = int(np.ceil(trajectory.duration / World.DT - 1e-9))
-    for step in range(1, count + 1):
-        wanted, _, _ = trajectory.at(min(step * World.DT, trajectory.duration))
+    step, late, rate, stopping = 0, 0.0, 1.0, False
+    while rate > 0.0 and step * World.DT - late < trajectory.duration - 1e-9 * World.DT:
+        if stopping:
+            rate = max(0.0, rate - World.DT / STOP)
+        step += 1
+        late += (1.0 - rate) * World.DT
+        wanted, _, _ = trajectory.at(min(step * World.DT - late, trajectory.duration))
         velocity: FloatArray = np.zeros(len(world.robot.joint_names))
         velocity[joints] = (wanted - world.commanded_positions[joints]) / World.DT
         world.step(JointCommand(velocity, gaps))
+        stopping = stopping or (until is not None and until())
+    return stopping
 
 
 def follow_base(

@@ -25,7 +25,7 @@ from twin.slip import Slip, SlipMonitor
 
 APPROACH = 0.08
 """How far [m] before the grasp the hand comes onto the straight way to it."""
-DEPTHS = (0.012, 0.006, 0.0)
+DEPTHS = (0.012, 0.006, 0.0, -0.006)
 """How much deeper than the middle of the pads the hand goes in where there is room [m]."""
 OPENINGS = (0.016, 0.010)
 """Narrower openings than the widest, more than the object's width [m]: between neighbours, inside a bowl."""
@@ -47,10 +47,17 @@ SLOWEST = 4.0
 """No gripper needs longer [s]."""
 PRESS_DOWN = 0.0005
 """Height [m] above the table at which an object is let go."""
+SETTLING = 0.012
+"""Height [m] from which an object is lowered slowly,"""
+TOUCHED_DOWN = 5.0
+"""until the wrist is pushed up by this force [N]."""
+NOTHING_HELD = "nothing held: pick an object first"
 TILT = 0.05
 """How far [rad] the tool of an arm that cannot choose its orientation may be from what a grasp asks."""
 GENTLE = ToolLimits(0.15, 0.6, 6.0, 0.8, 3.0, 30.0)
 """Tool limits near objects."""
+SLOW = ToolLimits(0.03, 0.3, 6.0, 0.2, 2.0, 30.0)
+"""Tool limits where something is touched."""
 CARRYING = ToolLimits(0.30, 1.0, 10.0, 1.0, 4.0, 40.0)
 """Tool limits with an object in the hand."""
 
@@ -72,10 +79,11 @@ class Handled:
 
 @dataclass(frozen=True, slots=True)
 class CarryPlan:
-    """How a held object is carried, lowered to where it shall rest, and how the hand then leaves it."""
+    """How a held object is carried, lowered, slowly set down where it shall rest, and how the hand then leaves it."""
 
     carrying: Trajectory
     lowering: Trajectory
+    settling: Trajectory
     leaving: Trajectory
 
 
@@ -121,6 +129,9 @@ class Handling:
         Args:
             object_id: Which one.
             lift: How far up [m].
+
+        Raises:
+            TwinError: There is no such object.
         """
         chosen = self._choose_grasp(object_id, lift)
         if isinstance(chosen, str):
@@ -168,33 +179,61 @@ class Handling:
 
     def carry(self, plan: CarryPlan) -> Handled:
         """Carry the held object as planned."""
+        if self._held is None:
+            return Handled(False, NOTHING_HELD)
         follow(self.world, plan.carrying, self._joints, self._openings)
         return self._checked(Handled(True), "carrying")
 
     def place(self, plan: CarryPlan) -> Handled:
         """Lower the held object as planned, let it go, and draw the hand back."""
         if self._grip is None or self._held is None:
-            return Handled(False, "nothing held: pick an object first")
+            return Handled(False, NOTHING_HELD)
         follow(self.world, plan.lowering, self._joints, self._openings)
-        slip = self._slip.measure(self.world.state()) if self._slip else None
+        lowered = self._checked(Handled(True), "lowering")
+        weight = self._pull_upwards()
+        # An object that was tilted by the fingers reaches the table early.
+        early = follow(
+            self.world,
+            plan.settling,
+            self._joints,
+            self._openings,
+            lambda: self._pull_upwards() - weight > TOUCHED_DOWN,
+        )
         self._move_fingers(self._grip.opening)
-        self._held = self._slip = None
-        follow(self.world, plan.leaving, self._joints, self._openings)
-        return Handled(True, slip=slip)
+        self._held = self._grip = self._slip = None
+        leaving = self._leaving(self.q) if early else plan.leaving
+        if leaving is None:
+            return Handled(False, "no straight way: the hand cannot draw back from where the object touched down")
+        follow(self.world, leaving, self._joints, self._openings)
+        return lowered
 
-    def _setting_down(self, start: FloatArray, drop: float) -> tuple[Trajectory, Trajectory] | None:
-        """The way straight down from a posture, and that back from the object; None if there is none."""
+    def _pull_upwards(self) -> float:
+        """Force on the wrist along the vertical [N]."""
+        return float(self.world.state().arms[self._number].wrist_wrench[2])
+
+    def _setting_down(self, start: FloatArray, drop: float) -> tuple[Trajectory, Trajectory, Trajectory] | None:
+        """The ways straight down from a posture, fast and slowly, and that back from the object; None without them."""
         above = self.arm.forward_kinematics(start)
-        at = _moved(above, np.array([0.0, 0.0, PRESS_DOWN - drop]))
-        lowering = self._plan_straight(start, at, GENTLE).trajectory
+        slow = min(SETTLING, drop)
+        lowering = self._plan_straight(start, _moved(above, np.array([0.0, 0.0, slow - drop])), GENTLE).trajectory
         if lowering is None:
             return None
-        end = lowering.at(lowering.duration)[0]
+        near = lowering.at(lowering.duration)[0]
+        at = _moved(above, np.array([0.0, 0.0, PRESS_DOWN - drop]))
+        settling = self._plan_straight(near, at, SLOW).trajectory
+        if settling is None:
+            return None
+        leaving = self._leaving(settling.at(settling.duration)[0])
+        return None if leaving is None else (lowering, settling, leaving)
+
+    def _leaving(self, start: FloatArray) -> Trajectory | None:
+        """The way of the hand straight back from where it let go; None if there is none."""
+        at = self.arm.forward_kinematics(start)
         approach = rotation_matrix(at.orientation_xyzw) @ self.arm.gripper.approach
         for part in (1.0, 0.6):
-            leaving = self._plan_straight(end, _moved(at, -part * APPROACH * approach), GENTLE).trajectory
+            leaving = self._plan_straight(start, _moved(at, -part * APPROACH * approach), GENTLE).trajectory
             if leaving is not None:
-                return lowering, leaving
+                return leaving
         return None
 
     def _carried_to(self, offset: FloatArray, turn: float) -> Pose:
@@ -218,15 +257,21 @@ class Handling:
 
     def _choose_grasp(self, object_id: int, lift: float) -> tuple[GraspPose, FloatArray, Trajectory] | str:
         """The first grasp that the arm reaches freely, the posture before it and the way in; or why there is none."""
-        arm = self.arm
+        arm, thing = self.arm, self.world.model_of(object_id)
         pose = next(each.pose_object_in_world for each in self.world.state().objects if each.id == object_id)
-        proposals = grasp_poses(
-            self.world.model_of(object_id), pose, arm.gripper, depths=DEPTHS, openings=OPENINGS, tilts=TILTS
-        )
+        proposals = grasp_poses(thing, pose, arm.gripper, depths=DEPTHS, openings=OPENINGS, tilts=TILTS)
         if not proposals:
             return "no grasp: no part of the object fits between the fingers"
         model = CollisionModel(
             self.world.placed_robot, self.world.obstacles(detailed={object_id}), moving=[self.arm_name]
+        )
+        # What of the hand is not made to touch the object must not push it away when the fingers close.
+        touching = [(link, str(object_id)) for link in arm.gripper.touching]
+        closed = CollisionModel(
+            self.world.placed_robot,
+            self.world.obstacles(detailed={object_id}),
+            moving=[self.arm_name],
+            may_touch=touching,
         )
         # The object itself is lifted with the hand.
         lifted = CollisionModel(
@@ -251,6 +296,8 @@ class Handling:
                 continue
             samples = way.trajectory.sample(0.05).position[::-1]  # what is in the way is near the end
             if not all(self._free(model, q, TABLE_CLEARANCE, proposal.opening) for q in samples):
+                continue
+            if not self._free(closed, samples[0], TABLE_CLEARANCE, proposal.width):
                 continue
             up = self._plan_straight(
                 samples[0], _moved(proposal.pose_tool_in_world, np.array([0.0, 0.0, lift])), GENTLE

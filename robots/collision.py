@@ -12,9 +12,9 @@ import pinocchio as pin
 from .kinematics import configuration, rotation_matrix, whole_model
 from .model import RobotModel
 from .obstacle import FLOOR, Obstacle
-from .pose import FloatArray, Pose
+from .pose import FloatArray, Pose, read_only
 
-__all__ = ["FLOOR", "CollisionModel", "Nearest", "Obstacle"]
+__all__ = ["FLOOR", "CollisionModel", "NearPair", "Nearest", "Obstacle"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,30 @@ class Nearest:
     distance: float
     first: str
     second: str
+
+
+@dataclass(frozen=True, slots=True)
+class NearPair:
+    """Two things and where they are nearest.
+
+    Attributes:
+        distance: Between the two [m]; negative when they overlap.
+        first: Link of the robot.
+        second: Another link, or an obstacle's name.
+        point_on_first: The nearest point of the first in the world, (3,) [m].
+        point_on_second: That of the second, (3,) [m].
+    """
+
+    distance: float
+    first: str
+    second: str
+    point_on_first: FloatArray
+    point_on_second: FloatArray
+
+    def __post_init__(self) -> None:
+        """Freeze the points."""
+        object.__setattr__(self, "point_on_first", read_only(self.point_on_first))
+        object.__setattr__(self, "point_on_second", read_only(self.point_on_second))
 
 
 class CollisionModel:
@@ -74,14 +98,14 @@ class CollisionModel:
         self._data = self._model.createData()
         self._geometry, own_pairs = _robot_geometry(robot)
         own = self._geometry.ngeoms
-        base = robot.pose_base_in_world
+        base = self._base = robot.pose_base_in_world
         to_base = pin.SE3(rotation_matrix(base.orientation_xyzw), np.array(base.position)).inverse()
         held_by = {
             arm: [self._add(thing, robot.arms[arm].tool_frame) for thing in things] for arm, things in self.held.items()
         }
         carried = [index for things in held_by.values() for index in things]
         around = [self._add(thing, None, to_base) for thing in self.obstacles]
-        self._around = around
+        self._around, self._carried = around, held_by
         names = [_name(self._model, each) for each in self._geometry.geometryObjects]
         allowed = {frozenset(pair) for pair in may_touch} | robot.may_touch
         if robot.drive is not None:
@@ -129,6 +153,7 @@ class CollisionModel:
 
     def place_base(self, pose_base_in_world: Pose) -> None:
         """Stand the robot elsewhere among the same obstacles; what it holds moves with it."""
+        self._base = pose_base_in_world
         to_base = _placement(pose_base_in_world).inverse()
         for index, thing in zip(self._around, self.obstacles, strict=True):
             self._geometry.geometryObjects[index].placement = to_base * _placement(thing.pose_obstacle_in_world)
@@ -143,6 +168,22 @@ class CollisionModel:
         pair = self._geometry.collisionPairs[index]
         distance = float(self._geometry_data.distanceResults[index].min_distance)
         return Nearest(distance, self._names[pair.first], self._names[pair.second])
+
+    def near(self, q: FloatArray, within: float, openings: Mapping[str, float] | None = None) -> list[NearPair]:
+        """All pairs of what may not touch that are nearer than `within` [m], the nearest first; see `nearest`."""
+        if len(self._geometry.collisionPairs) == 0:
+            return []
+        pin.computeDistances(
+            self._model, self._data, self._geometry, self._geometry_data, self._configuration(q, openings)
+        )
+        to_world = _placement(self._base)
+        found = []
+        for pair, result in zip(self._geometry.collisionPairs, self._geometry_data.distanceResults, strict=True):
+            if result.min_distance < within:
+                points = (to_world.act(result.getNearestPoint1()), to_world.act(result.getNearestPoint2()))
+                names = self._names[pair.first], self._names[pair.second]
+                found.append(NearPair(float(result.min_distance), *names, *points))
+        return sorted(found, key=lambda each: each.distance)
 
     def _configuration(self, q: FloatArray, openings: Mapping[str, float] | None) -> FloatArray:
         return configuration(self._model, self.robot.expand(q, openings or {}))

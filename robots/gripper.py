@@ -26,6 +26,7 @@ class Gripper:
         closing: Unit vector in the tool frame along which the fingers close, (3,).
         ways: Part of the way from closed to open, rising from 0 to 1, (k,), at which
         gaps: these gaps [m] were measured, rising too, (k,).
+        touching: Links that are made to touch what is held; the rest of the hand is not.
     """
 
     joints: tuple[str, str]
@@ -40,6 +41,7 @@ class Gripper:
     closing: FloatArray
     ways: FloatArray = field(repr=False)
     gaps: FloatArray = field(repr=False)
+    touching: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         """Freeze the arrays."""

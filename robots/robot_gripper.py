@@ -62,7 +62,28 @@ def make_gripper(arm: ArmSection, urdf: Urdf, urdf_path: Path, toml: Path) -> Gr
         closing=unit_axis(spec.closing),
         ways=ways,
         gaps=gaps,
+        touching=_touching(spec, urdf),
     )
+
+
+def _touching(spec: GripperSection, urdf: Urdf) -> frozenset[str]:
+    """The links that carry the pads; where no pads are named, all of the fingers."""
+    carried = {joint.child for joint in urdf.joints.values()}
+    if spec.pads is not None:
+        links = set(spec.pads)
+        for link in spec.pads:
+            while link not in carried:
+                link = urdf.parents[link]
+                links.add(link)
+        return frozenset(links)
+    links = {urdf.joints[name].child for name in spec.joints}
+    for link in urdf.links:
+        above = link
+        while above in urdf.parents and above not in links:
+            above = urdf.parents[above]
+        if above in links:
+            links.add(link)
+    return frozenset(links)
 
 
 def _open_positions(spec: GripperSection, closed: FloatArray) -> FloatArray:

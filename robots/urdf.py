@@ -42,10 +42,11 @@ class UrdfJoint:
 
 @dataclass(frozen=True, slots=True)
 class Urdf:
-    """Movable joints by name in file order, and all link names."""
+    """Movable joints by name in file order, all link names, and the link that carries each but the root."""
 
     joints: dict[str, UrdfJoint]
     links: tuple[str, ...]
+    parents: dict[str, str]
 
 
 def read_urdf(path: Path) -> Urdf:
@@ -71,7 +72,8 @@ def read_urdf(path: Path) -> Urdf:
     for joint in joints.values():
         if joint.mimic is not None and joint.mimic.source not in joints:
             raise RobotError(f"{path}: joint {joint.name}: mimics {joint.mimic.source!r}, which is no movable joint")
-    return Urdf(joints, links)
+    parents = {end_of(each, "child"): end_of(each, "parent") for each in root.findall("joint")}
+    return Urdf(joints, links, parents)
 
 
 def _read_joint(element: ElementTree.Element, path: Path) -> UrdfJoint:

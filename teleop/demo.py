@@ -1,6 +1,7 @@
 """A recorded demo in memory."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,8 @@ from numpy.typing import NDArray
 from robots.pose import FloatArray
 from twin.scene_spec import SceneSpec
 
+from .demo_events import Event, Outcome, Sentence, Trim
+from .drive_track import ArmsTrack, DriveTrack, HandsTrack
 from .gamepad import GamepadState
 from .gamepad_mapping import GamepadMapping
 
@@ -99,6 +102,19 @@ class Demo:
         commands: Commands at the control rate.
         versions: Versions of the software that recorded it, by distribution.
         complete: False where the file ends early (a crash, a full disk); all that was recovered is here.
+        sentences: The utterances with the step at which each was said, and whether before, during or after.
+        events: What happened: the servo slowed down or stopped, a device was lost, a gripper closed.
+        outcome: How it ended, None where nobody said.
+        wall_ns: Wall-clock time of each control step since 1970, (K,) [ns]; None where it was not kept.
+        drive: What was wanted of the whole robot at the control rate; None for a demo driven through `Session`.
+        arm_commands: Commands of all arms and the base at the control rate; None where there was no `drive`.
+        hands: Hands of all arms at the moments of the states; None where they were not kept.
+        base: The robot's base in the world: position [m] and quaternion xyzw, (T, 7); None where it does not move.
+        prelude: A trimmed demo's inputs before its first step, from the scene's start; None where nothing was trimmed.
+        trim: Where a trimmed demo was cut from.
+        repaired: Whether the file ended early and was rewritten up to there.
+        code: Version of the code that recorded it; empty where it was not kept.
+        metadata: All metadata of the file.
     """
 
     path: Path
@@ -111,6 +127,19 @@ class Demo:
     commands: CommandTrack
     versions: dict[str, str]
     complete: bool
+    sentences: tuple[Sentence, ...] = ()
+    events: tuple[Event, ...] = ()
+    outcome: Outcome | None = None
+    wall_ns: NDArray[np.int64] | None = None
+    drive: DriveTrack | None = None
+    arm_commands: ArmsTrack | None = None
+    hands: HandsTrack | None = None
+    base: FloatArray | None = None
+    prelude: InputTrack | DriveTrack | None = None
+    trim: Trim | None = None
+    repaired: bool = False
+    code: str = ""
+    metadata: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def times(self) -> FloatArray:

@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from twin.scene_spec import SceneSpec
 from twin.state import WorldState
@@ -39,6 +39,19 @@ class Operator(Protocol):
         """Look at the world and say what the gamepad says now; called at 60 Hz."""
 
 
+@runtime_checkable
+class Judge(Protocol):
+    """An operator who says how it went."""
+
+    @property
+    def success(self) -> bool | None:
+        """Whether the task is believed done; None before the end."""
+
+    @property
+    def note(self) -> str:
+        """What went wrong, in plain words."""
+
+
 def record_demo(
     world: World,
     operator: Operator,
@@ -65,7 +78,7 @@ def record_demo(
 
     Raises:
         TeleopError: The world has moved already.
-        DemoError: The file cannot be written.
+        DemoError: The file cannot be written; what was recorded before a disk failed is kept.
     """
     if world.time != 0.0:
         raise TeleopError(
@@ -74,7 +87,7 @@ def record_demo(
     path = Path(path)
     session = Session(world, mapping)
     rate = round(1.0 / world.DT)
-    with Recorder(path, world.spec, session.mapping, rate) as recorder:
+    with Recorder(path, world.spec, session.mapping, rate, robot=world.robot) as recorder:
         for text in utterances:
             recorder.utterance(text)
         gamepad = GamepadState()
@@ -85,11 +98,13 @@ def record_demo(
                 gamepad = operator.act(state, world.spec)
                 if step % STATE_EVERY == 0:
                     recorder.state(step, state)
-                    if operator.done or step >= last:
+                    if operator.done or step >= last or recorder.failed:
                         break
             result = session.step(gamepad)
             recorder.control(step, gamepad, result, session.opening)
             step += 1
+        if isinstance(operator, Judge) and operator.success is not None:
+            recorder.outcome("success" if operator.success else "failure", operator.note)
     if truth is None:
         truth_path(path).unlink(missing_ok=True)
     else:

@@ -1,73 +1,133 @@
 """The recorder: a demo is written to MCAP as it happens, in chunks that a crash cannot take back."""
 
-import contextlib
 import json
-from importlib.metadata import PackageNotFoundError, version
+import time
+from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, Self
+from typing import Self
 
+import numpy as np
 import orjson
-from mcap.writer import CompressionType, Writer
 
+from robots.model import RobotModel
 from twin.scene_spec import SceneSpec
 from twin.state import WorldState
 
+from .code_version import code_version, software_versions
+from .demo_events import EventKind, OutcomeKind, When
+from .demo_file import start_file
 from .demo_format import (
+    ARMS,
+    BASE,
     COMMAND,
+    DRIVE,
+    EVENT,
+    EVENTS,
     FORMAT_VERSION,
     GAMEPAD,
     GRIPPER,
+    HANDS,
     JOINTS,
-    METADATA,
     OBJECTS,
-    SCHEMAS,
+    OUTCOME,
+    OUTCOMES,
     UNITS,
     UTTERANCE,
     log_time,
 )
+from .disk_writer import DiskWriter
+from .drive_command import DriveCommand
+from .drive_track import command_to_message
 from .errors import DemoError
+from .event_watch import DriveOutcome, EventWatch, openings_of
 from .gamepad import GamepadState
 from .gamepad_mapping import GamepadMapping
 from .servo import ServoResult
 
 CHUNK_STEPS = 120
-"""A chunk is closed and handed to the system after this many control steps: half a second."""
-_RECORDED_WITH = ("showtell", "pybullet", "pin", "ruckig", "numpy", "mcap")
+"""A chunk is closed and handed to the disk after this many control steps: half a second."""
+CHUNK_NS = 500_000_000
+"""It is closed after this much wall-clock time too, should control be slower than it ought to be [ns]."""
+CLOSE_WITHIN = 30.0
+"""How long `close` waits for the disk [s]."""
+_CHUNK_BYTES = 1 << 20
 
 
 class Recorder:
     """Writes one demo. Use it with `with`: leaving through an exception keeps what was recorded, marked incomplete.
 
-    Nothing about a state is computed here, so that recording does not slow control.
+    Nothing about a state is computed here and nothing waits for the disk, so that recording does not slow control. A
+    disk that fails ends the recording and nothing else: `failed` says so, what was written stays, and further calls
+    do nothing until `close` raises.
+
+    Each message carries simulated time (MCAP's log time) and wall-clock time (its publish time).
     """
 
-    def __init__(self, path: Path, scene: SceneSpec, mapping: GamepadMapping, rate: int) -> None:
+    def __init__(
+        self,
+        path: Path,
+        scene: SceneSpec,
+        mapping: GamepadMapping,
+        rate: int,
+        *,
+        robot: RobotModel | None = None,
+        details: Mapping[str, str] | None = None,
+        exclusive: bool = False,
+    ) -> None:
         """Open the file and write the metadata.
 
         Args:
             path: The demo; an existing file is replaced.
             scene: The scene the demo starts from.
-            mapping: How the gamepad was mapped.
+            mapping: How the gamepad was mapped, for a demo that is driven through `Session`.
             rate: Control steps a second.
+            robot: The robot; its joints are then named in the metadata, and its base is recorded where it moves.
+            details: More metadata that a replay needs, such as the settings of the mapping and of the servo, by name.
+            exclusive: Refuse a file that exists.
 
         Raises:
-            DemoError: The file cannot be written.
+            DemoError: The file cannot be written, or exists and `exclusive` is set.
         """
         self.path = path
         self._rate = rate
         self._step = 0
+        self._controlled = False
         self._closed = False
+        self._chunk_began = 0
+        self._watch = EventWatch()
+        self._moves = robot is not None and robot.drive is not None
+        self._arms = tuple(robot.arms) if robot is not None else ()
+        # Wall-clock time that never jumps back: the clock's at the start, then that of a steady one.
+        self._wall_offset = time.time_ns() - time.perf_counter_ns()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = path.open("wb")
+            self._disk = DiskWriter(path, exclusive=exclusive)
         except OSError as error:
             raise DemoError(f"{path}: cannot be written: {error.strerror}") from error
-        self._writer: Any = Writer(self._file, chunk_size=1 << 20, compression=CompressionType.ZSTD)
-        try:
-            self._begin(scene, mapping)
-        except OSError as error:
-            raise self._failed(error) from error
+        metadata = {
+            "format": FORMAT_VERSION,
+            "robot": scene.robot,
+            "scene": scene.model_dump_json(),
+            "seed": str(scene.seed),
+            "rate": str(rate),
+            "mapping": json.dumps(mapping.to_dict()),
+            "units": json.dumps(UNITS),
+            "versions": json.dumps(software_versions()),
+            "code": code_version(),
+            "started": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
+            **_names(robot),
+        }
+        taken = sorted(set(metadata) & set(details or ()))
+        if taken:
+            self._disk.end()
+            raise DemoError(f"details may not be named {', '.join(taken)}: these are the demo's own metadata")
+        self._writer, self._channels = start_file(self._disk, {**metadata, **(details or {})}, _CHUNK_BYTES)
+        self._disk.flush()
+        self._disk.wait_written(CLOSE_WITHIN)
+        if self.failed:
+            self.abandon()
+            raise DemoError(self.failed)
 
     def __enter__(self) -> Self:
         """Nothing to do: a recorder is open from the start."""
@@ -82,17 +142,61 @@ class Recorder:
         else:
             self.abandon()
 
-    def utterance(self, text: str) -> None:
-        """Record a sentence about the demo, at the present step."""
-        self._write(UTTERANCE, self._step, {"step": self._step, "text": text})
+    @property
+    def failed(self) -> str:
+        """Why recording ended by itself, in one line; empty while all is well."""
+        if not self._disk.failed:
+            return ""
+        return (
+            f"{self.path}: cannot be written on: {self._disk.failed}; what was recorded until about "
+            f"{self._step / self._rate:.1f} s is kept"
+        )
 
-    def control(self, step: int, gamepad: GamepadState, result: ServoResult, gripper_opening: float) -> None:
-        """Record one control step: the input, what it asked for and what was executed.
+    @property
+    def seconds(self) -> float:
+        """Simulated time recorded so far [s]."""
+        return self._step / self._rate
+
+    @property
+    def finished(self) -> bool:
+        """Whether the file is written to its end and closed, or recording failed."""
+        return self._disk.closed
+
+    def utterance(self, text: str, when: When | None = None) -> None:
+        """Record a sentence about the demo, at the present step.
+
+        Args:
+            text: The sentence.
+            when: Before, during or after the demo; None takes before until control begins, then during.
+        """
+        said = when or ("during" if self._controlled else "before")
+        self._write(UTTERANCE, self._step, {"step": self._step, "text": text, "when": said})
+        self._flush()
+
+    def event(self, kind: EventKind, text: str, arm: str = "") -> None:
+        """Record that something happened, at the present step. `drive` notices most by itself.
 
         Raises:
-            DemoError: The disk is full; what was written before is kept.
+            DemoError: There is no such kind of event.
         """
-        self._step = step
+        if kind not in EVENTS:
+            raise DemoError(f"an event cannot be of kind {kind!r}: use one of {', '.join(EVENTS)}")
+        self._write(EVENT, self._step, {"step": self._step, "kind": kind, "text": text, "arm": arm})
+
+    def outcome(self, outcome: OutcomeKind, note: str = "") -> None:
+        """Record how the demo ended; the last word counts.
+
+        Raises:
+            DemoError: There is no such outcome.
+        """
+        if outcome not in OUTCOMES:
+            raise DemoError(f"an outcome cannot be {outcome!r}: use one of {', '.join(OUTCOMES)}")
+        self._write(OUTCOME, self._step, {"step": self._step, "outcome": outcome, "note": note})
+        self._flush()
+
+    def control(self, step: int, gamepad: GamepadState, result: ServoResult, gripper_opening: float) -> None:
+        """Record one control step of `Session`: the input, what it asked for and what was executed."""
+        self._begin_step(step)
         self._write(GAMEPAD, step, {"step": step, "axes": gamepad.axes, "buttons": gamepad.buttons})
         self._write(
             COMMAND,
@@ -106,15 +210,58 @@ class Recorder:
                 "reason": str(result.reason),
             },
         )
-        if (step + 1) % CHUNK_STEPS == 0:
-            self._flush()
+        self._end_step(step)
+
+    def drive(self, step: int, gamepad: GamepadState, command: DriveCommand, result: DriveOutcome) -> None:
+        """Record one control step of a whole robot, and in words what changed since the last one.
+
+        Args:
+            step: Control step, counted from the scene's start.
+            gamepad: What the device said; resting where it is none.
+            command: What was wanted: a replay gives this to the servo.
+            result: What the servo made of it.
+        """
+        self._begin_step(step)
+        openings = openings_of(result)
+        arms = list(result.arms.values())
+        first = arms[0]
+        self._write(GAMEPAD, step, {"step": step, "axes": gamepad.axes, "buttons": gamepad.buttons})
+        self._write(DRIVE, step, {"step": step, **command_to_message(command)})
+        self._write(
+            COMMAND,
+            step,
+            {
+                "step": step,
+                "asked": first.asked,
+                "executed": first.executed,
+                "joint_velocity": result.joint_velocity,
+                "gripper_opening": openings[0],
+                "reason": str(first.reason),
+            },
+        )
+        self._write(
+            ARMS,
+            step,
+            {
+                "step": step,
+                "names": list(result.arms),
+                "asked": [each.asked for each in arms],
+                "executed": [each.executed for each in arms],
+                "openings": openings,
+                "reasons": [str(each.reason) for each in arms],
+                "details": [each.detail for each in arms],
+                "base_asked": result.base_asked,
+                "base_executed": result.base_twist,
+                "state": str(result.state),
+                "reason": str(result.reason),
+            },
+        )
+        for kind, text, arm in self._watch.after(step, command, result):
+            self.event(kind, text, arm)
+        self._end_step(step)
 
     def state(self, step: int, state: WorldState) -> None:
-        """Record the state of the world before a step.
-
-        Raises:
-            DemoError: The disk is full; what was written before is kept.
-        """
+        """Record the state of the world before a step."""
         self._step = step
         tool = state.pose_tool_in_world
         self._write(JOINTS, step, {"step": step, "time": state.time, "q": state.q, "dq": state.dq})
@@ -141,85 +288,106 @@ class Recorder:
                 "orientations_xyzw": [pose.orientation_xyzw for pose in poses],
             },
         )
+        if state.arms and self._arms:
+            self._hands(step, state)
+        if self._moves and state.pose_base_in_world is not None:
+            base = state.pose_base_in_world
+            self._write(
+                BASE, step, {"step": step, "position": base.position, "orientation_xyzw": base.orientation_xyzw}
+            )
+        if not self._controlled:
+            self._flush()  # from here on the file can be read, whatever happens
+
+    def finish(self) -> None:
+        """Write the index and let the disk finish; returns at once. `finished` tells when it is done."""
+        if not self._closed:
+            self._closed = True
+            self._writer.finish()
+            self._disk.end()
+
+    def sync(self, timeout: float = CLOSE_WITHIN) -> bool:
+        """Wait until the chunks so far are on the disk; False after `timeout` [s]. Not for control loops."""
+        return self._disk.wait_written(timeout)
+
+    def wait(self, timeout: float = CLOSE_WITHIN) -> bool:
+        """After `finish`: wait until the file is closed; False after `timeout` [s]."""
+        return self._disk.wait_closed(timeout)
 
     def close(self) -> None:
-        """Write the index and close; the demo is complete.
+        """Finish, and wait until the demo is on the disk.
 
         Raises:
-            DemoError: The disk is full; what was written before is kept.
+            DemoError: The disk failed; what was written before is kept.
         """
-        if self._closed:
+        if self._closed and self._disk.closed:
             return
-        try:
-            self._writer.finish()
-            self._file.close()
-        except OSError as error:
-            raise self._failed(error) from error
-        self._closed = True
+        self.finish()
+        if not self._disk.wait_closed(CLOSE_WITHIN):
+            raise DemoError(f"{self.path}: the disk did not take the end of the demo within {CLOSE_WITHIN:.0f} s")
+        if self.failed:
+            raise DemoError(self.failed)
 
     def abandon(self) -> None:
         """Close without the index, keeping what was recorded; the demo stays marked as incomplete."""
         if self._closed:
             return
         self._closed = True
-        with contextlib.suppress(OSError):  # the disk may be what failed
-            self._writer.flush()
-        _close_quietly(self._file)
+        self._writer.flush()
+        self._disk.end()
+        self._disk.wait_closed(CLOSE_WITHIN)
 
-    def _begin(self, scene: SceneSpec, mapping: GamepadMapping) -> None:
-        self._writer.start(profile="showtell", library=f"showtell {_version_of('showtell')}")
-        versions = {name: _version_of(name) for name in _RECORDED_WITH}
-        self._writer.add_metadata(
-            METADATA,
+    def _hands(self, step: int, state: WorldState) -> None:
+        tools = [arm.pose_tool_in_world for arm in state.arms]
+        self._write(
+            HANDS,
+            step,
             {
-                "format": FORMAT_VERSION,
-                "robot": scene.robot,
-                "scene": scene.model_dump_json(),
-                "seed": str(scene.seed),
-                "rate": str(self._rate),
-                "mapping": json.dumps(mapping.to_dict()),
-                "units": json.dumps(UNITS),
-                "versions": json.dumps(versions),
+                "step": step,
+                "names": self._arms,
+                "positions": [tool.position for tool in tools],
+                "orientations_xyzw": [tool.orientation_xyzw for tool in tools],
+                "openings": [arm.gripper_opening for arm in state.arms],
+                "closed": [arm.gripper_closed for arm in state.arms],
+                "held": [arm.held for arm in state.arms],
+                "wrist_wrenches": [arm.wrist_wrench for arm in state.arms],
+                "finger_efforts": [arm.finger_effort for arm in state.arms],
             },
         )
-        self._channels = {
-            topic: self._writer.register_channel(topic, "json", self._writer.register_schema(name, "jsonschema", data))
-            for topic, (name, data) in SCHEMAS.items()
-        }
-        self._file.flush()
+
+    def _begin_step(self, step: int) -> None:
+        self._step = step
+        self._controlled = True
+
+    def _end_step(self, step: int) -> None:
+        if (step + 1) % CHUNK_STEPS == 0 or time.perf_counter_ns() - self._chunk_began >= CHUNK_NS:
+            self._flush()
 
     def _write(self, topic: str, step: int, message: dict[str, object]) -> None:
-        data = orjson.dumps(message, option=orjson.OPT_SERIALIZE_NUMPY)
-        time = log_time(step, self._rate)
-        try:
-            self._writer.add_message(self._channels[topic], time, data, time, step)
-        except OSError as error:
-            raise self._failed(error) from error
+        if self._closed or self._disk.failed:
+            return
+        now = time.perf_counter_ns()
+        if not self._chunk_began:
+            self._chunk_began = now
+        data = orjson.dumps(message, default=_plain, option=orjson.OPT_SERIALIZE_NUMPY)
+        self._writer.add_message(self._channels[topic], log_time(step, self._rate), data, now + self._wall_offset, step)
 
     def _flush(self) -> None:
-        try:
+        """Close the chunk and hand it to the disk."""
+        if not self._closed and not self._disk.failed:
             self._writer.flush()
-        except OSError as error:
-            raise self._failed(error) from error
-
-    def _failed(self, error: OSError) -> DemoError:
-        """Close after a failed write and say what is left."""
-        self._closed = True
-        _close_quietly(self._file)
-        return DemoError(
-            f"{self.path}: cannot be written on: {error.strerror or error}; what was recorded until about "
-            f"{self._step / self._rate:.1f} s is kept"
-        )
+        self._chunk_began = 0
 
 
-def _close_quietly(file: IO[bytes]) -> None:
-    """Close a file whose disk may be full; closing frees the handle even when the last flush fails."""
-    with contextlib.suppress(OSError):
-        file.close()
+def _names(robot: RobotModel | None) -> dict[str, str]:
+    """Metadata that name what the columns of the arrays are."""
+    if robot is None:
+        return {}
+    arms = {name: list(arm.joint_names) for name, arm in robot.arms.items()}
+    return {"joints": json.dumps(list(robot.joint_names)), "arms": json.dumps(arms)}
 
 
-def _version_of(distribution: str) -> str:
-    try:
-        return version(distribution)
-    except PackageNotFoundError:
-        return "not installed"
+def _plain(value: object) -> object:
+    """What orjson does not know: arrays that are not contiguous, and NumPy's numbers."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} cannot be written to a demo")

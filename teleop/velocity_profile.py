@@ -40,6 +40,23 @@ class VelocityProfile:
         self._solve(velocity, acceleration, self._rest)
         return [(bound.min, bound.max) for bound in self._trajectory.position_extrema]
 
+    def way_to_rest(
+        self, velocity: Sequence[float], acceleration: Sequence[float], parts: Sequence[float]
+    ) -> tuple[list[list[float]], float]:
+        """Where each joint is after parts of the braking time, as it brakes, and the braking time.
+
+        Args:
+            velocity: n of them [rad/s].
+            acceleration: n of them [rad/s²].
+            parts: Parts of the braking time, 0..1, m of them.
+
+        Returns:
+            Way from here [rad], m rows of n; time until the last joint rests [s].
+        """
+        self._solve(velocity, acceleration, self._rest)
+        duration = self._trajectory.duration
+        return [self._trajectory.at_time(part * duration)[0] for part in parts], duration
+
     def _solve(self, velocity: Sequence[float], acceleration: Sequence[float], target: Sequence[float]) -> None:
         self._input.current_velocity = list(velocity)
         self._input.current_acceleration = list(acceleration)

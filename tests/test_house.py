@@ -13,7 +13,22 @@ from packaging.requirements import Requirement
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 FLOORS = ("robots", "twin", "teleop", "learning", "executor")
-HEAVY = ("coal", "highspy", "open3d", "pinocchio", "pulp", "pybullet", "ruckig", "scipy", "sklearn")
+HEAVY = (
+    "coal",
+    "highspy",
+    "moderngl",
+    "numba",
+    "ompl",
+    "open3d",
+    "pinocchio",
+    "pulp",
+    "pybullet",
+    "pygame",
+    "ruckig",
+    "scipy",
+    "sklearn",
+    "trimesh",
+)
 
 
 def packages() -> Iterator[str]:

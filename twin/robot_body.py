@@ -101,7 +101,8 @@ class RobotBody:
         self._wheels = [joints[name] for name in robot.drive.wheels] if robot.drive else []
         if robot.drive is not None:
             for wheel in self._wheels:
-                physics.set_friction(self.body, wheel, WHEEL_FRICTION, anchored=True)
+                # Without an anchor: it would hold a wheel back as it rolls, by up to a radian in a turn.
+                physics.set_friction(self.body, wheel, WHEEL_FRICTION)
             for roller in robot.drive.rollers:
                 physics.set_friction(self.body, links[roller], 0.0)
         self._wheel_speeds = [0.0, 0.0]

@@ -7,6 +7,7 @@ import numpy as np
 from robots.kinematics import rotation_matrix
 from robots.pose import FloatArray, Pose
 
+from .errors import TwinError
 from .state import WorldState
 
 SLIPPED = 0.005
@@ -44,7 +45,7 @@ class SlipMonitor:
         object_id: What it holds.
 
     Raises:
-        KeyError: There is no such object.
+        TwinError: There is no such object.
     """
 
     def __init__(self, state: WorldState, arm: int, object_id: int) -> None:
@@ -74,4 +75,4 @@ def _pose_of(state: WorldState, object_id: int) -> Pose:
     for each in state.objects:
         if each.id == object_id:
             return each.pose_object_in_world
-    raise KeyError(f"no object {object_id}; the scene has {', '.join(str(each.id) for each in state.objects)}")
+    raise TwinError(f"no object {object_id}; the scene has {', '.join(str(each.id) for each in state.objects)}")

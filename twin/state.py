@@ -38,8 +38,8 @@ class ArmState:
         gripper_closed: Whether the gripper was last told to close.
         pose_tool_in_world: Tool frame.
         held: Id of the object that both fingers touch, else None.
-        wrist_wrench: What hand and held object pull at the last joint, (6,): force [N], and torque about the joint [Nm],
-            along the axes of the world. A hand at rest shows the weight of both, downwards.
+        wrist_wrench: What hand and held object pull at the last joint, (6,): force [N] and torque about that joint
+            [Nm], along the axes of the world. A hand at rest shows the weight of both, downwards.
         finger_effort: Efforts of the two finger motors [N or Nm].
     """
 

@@ -24,7 +24,7 @@ CARRY = 0.30
 """Height and length [m] of what is done with each object."""
 DIRECTIONS = 24
 """Directions of the carry that are tried, in random order; the first that ends on the table and in reach is taken."""
-TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 1.57, -1.57)
+TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 1.57, -1.57, 2.2, -2.2)
 """Turns about the vertical [rad] that are tried where no straight carry is in reach."""
 BESIDE = 0.20
 """How far beside the board a block may end [m]: from its middle no carry of 0.3 m ends on it."""

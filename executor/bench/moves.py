@@ -141,7 +141,11 @@ def _some_moves(task: tuple[str, int, int, int]) -> Moves:
             made += 1
         base_off: tuple[float, ...] = ()
         if model.drive is not None:
-            # The arm stays as it is: where it reaches out, the base needs more room.
+            # With the arm stretched out the base could hardly turn anywhere.
+            home = plan_motion(world.commanded_positions, model.home, limits, free, rng, is_clear=clear)
+            if home.trajectory is None:
+                raise RuntimeError(f"{robot}: no way home from {world.commanded_positions}: {home.reason}")
+            touches += _play(world, home.trajectory.sample(SAMPLE).position, list(openings.values()))[0]
             around.place_base(world.base_pose)
             part, touched, end = _move_base(world, around, rng)
             worst, base_off = max(worst, part), (end,)
@@ -171,25 +175,24 @@ def _move_base(world: World, around: CollisionModel, rng: np.random.Generator) -
         return around.free(q, openings, margin)
 
     start = np.array(base_pose(world))
+    trajectory = None
     for _ in range(TRIES):
         goal = rng.uniform(*FLOOR_SPACE)
-        if not free(goal):
-            continue
-        planned = drive_base(start, goal, limits, free, rng)
-        if planned.trajectory is not None:
+        trajectory = drive_base(start, goal, limits, free, rng).trajectory if free(goal) else None
+        if trajectory is not None:
             break
-    else:
-        raise RuntimeError(f"no way was found for the base to {TRIES} goals from {start}: {planned.reason}")
-    samples = planned.trajectory.sample(SAMPLE)
+    if trajectory is None:
+        raise RuntimeError(f"no way was found for the base to {TRIES} goals from {start}")
+    samples = trajectory.sample(SAMPLE)
     most = np.array([[drive.speed, drive.yaw_rate], [drive.acceleration, drive.yaw_acceleration]])
     part = max(
         float((np.abs(values) / bound).max())
         for values, bound in zip((samples.twist, samples.acceleration), most, strict=True)
     )
     touched: list[bool] = []
-    follow_base(world, planned.trajectory, world.commanded_openings, lambda: touched.append(bool(world.touches())))
+    follow_base(world, trajectory, world.commanded_openings, lambda: touched.append(bool(world.touches())))
     end = np.array(base_pose(world))
-    return part, any(touched), float(np.linalg.norm(end[:2] - planned.trajectory.goal[:2]))
+    return part, any(touched), float(np.linalg.norm(end[:2] - trajectory.goal[:2]))
 
 
 def _free_posture(

@@ -41,11 +41,18 @@ def replay(
     factor = f"{report.simulated:.1f} s simulated in {report.wall:.1f} s, {report.real_time_factor:.1f} x real time"
     out.say(f"{demo.name}: " + " / ".join(recorded.utterances or ("nothing was said",)))
     out.say(f"{len(recorded.inputs)} inputs played; {factor}")
+    if recorded.trim is not None:
+        out.say(
+            f"cut from {recorded.trim.origin}: it starts in the middle of a motion, so the {report.prelude:.2f} s "
+            "before it were played first, from the scene's start"
+        )
     worst = f"largest difference {report.max_error:.3g} ({report.worst} at {report.worst_time:.2f} s)"
     reached = (
         f"all {report.states} recorded states reached" if report.success else "the recorded states are not reached"
     )
     out.say(f"{reached}: {worst}")
+    for warning in report.warnings:
+        out.note(f"note: {warning}")
     if picture is not None:
         _film(picture, recorded)
         out.say(f"picture: {picture}")
@@ -57,6 +64,9 @@ def replay(
             "states": report.states,
             "max_error": report.max_error,
             "worst": report.worst,
+            "worst_time": report.worst_time,
+            "prelude_seconds": report.prelude,
+            "warnings": list(report.warnings),
             "simulated_seconds": report.simulated,
             "real_time_factor": report.real_time_factor,
             "picture": picture,
@@ -69,18 +79,16 @@ def replay(
 def _film(path: Path, demo: "Demo") -> None:
     """Write a film of a demo: its inputs played once more, a view every fifth of a second."""
     from executor.picture import save_film, save_strip
-    from teleop.session import Session
-    from twin import World
+    from teleop.replay import DemoPlayer
 
     views = []
     every = max(1, demo.rate // 5)
-    with World.from_scene(demo.scene) as world:
-        session = Session(world, demo.mapping)
+    with DemoPlayer(demo) as player:
         for step in range(len(demo.inputs)):
             if step % every == 0 and path.suffix.lower() == ".gif":
-                views.append(world.render(320, 240))
-            session.step(demo.inputs.gamepad(step))
-        views.append(world.render(320, 240))
+                views.append(player.world.render(320, 240))
+            player.step()
+        views.append(player.world.render(320, 240))
     caption = " / ".join(demo.utterances)
     if path.suffix.lower() == ".gif":
         save_film(path, views, caption, 0.1)

@@ -15,7 +15,7 @@ from twin.state import ObjectState
 
 CAMERAS = {"tabletop": "chest", "ordering": "base"}
 LEAST_PIXELS = 30
-SEEDS = range(8)
+SEEDS = range(6)
 
 
 def view_of(world: World) -> SceneView:
@@ -24,7 +24,7 @@ def view_of(world: World) -> SceneView:
 
 def look(world: World, name: str) -> tuple[RgbdFrame, CameraModel, Pose]:
     view, state = view_of(world), world.state()
-    robot, camera = robot_state(world.robot, state), view_of(world).camera(name)
+    robot, camera = robot_state(world.robot, state), view.camera(name)
     eye = view.camera_pose(name, robot)
     with make_renderer(view.geometry, camera) as renderer:
         return renderer.render(view.poses(robot, state.objects), eye), camera, eye

@@ -1,0 +1,200 @@
+"""One arm's wishes as joint velocities: smoothed, held to a reference pose, slowed near singular postures."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots import ArmModel, RobotModel
+from robots.kinematics import Kinematics
+from robots.pose import FloatArray
+
+from .drive_command import ArmWish
+from .servo_reason import DriveReason
+from .velocity_profile import VelocityProfile
+
+LENGTH = 0.3
+"""So many metres of the tool's motion weigh as much as a radian [m]."""
+SLOW_ABOVE, STOP_AT = 17.0, 30.0
+"""Condition numbers between which motion towards singular postures slows down, as in MoveIt Servo."""
+CLEAR_BELOW = 15.0
+"""Once slowed, an arm counts as near a singular posture down to this condition number: no flicker in what is shown."""
+WORSENS = 0.5
+"""Condition numbers a second from which motion counts as leading in; below, the slow-down sets in smoothly [1/s]."""
+ACCELERATION = (1.5, 1.5, 1.5, 5.0, 5.0, 5.0)
+JERK = (25.0, 25.0, 25.0, 80.0, 80.0, 80.0)
+"""How the tool's speed changes [m/s², rad/s², m/s³, rad/s³]: slow enough for joints to follow on a straight line."""
+GAIN = 5.0
+"""How fast the tool comes back to its reference [1/s]."""
+LEASH = (0.003, 0.02)
+"""The reference is never farther ahead than this [m, rad]."""
+NULL_WEIGHT = 2e-3
+"""Weight of motion that does not move the tool, beside 1 for motion that does [m²/rad²]: the elbow gives way first."""
+_MOVING = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class ArmIntent:
+    """What an arm would do if nothing were in the way.
+
+    Attributes:
+        asked: The tool's twist, (6,) [m/s, rad/s], along the axes of the base.
+        velocity: Joint velocities, (n,) [rad/s].
+        jacobian: Of the tool, (6, n), along the axes of the base.
+        inverse_weight: Of joints in avoiding things, (n, n).
+        free: Which joints may move, (n,).
+        reason: Why `velocity` does not give `asked`.
+        detail: What is behind it.
+    """
+
+    asked: FloatArray
+    velocity: FloatArray
+    jacobian: FloatArray
+    inverse_weight: FloatArray
+    free: NDArray[np.bool_]
+    reason: DriveReason
+    detail: str = ""
+
+
+class ArmServo:
+    """Keeps an arm's smoothed twist and reference pose from step to step, in the frame of the base."""
+
+    def __init__(self, robot: RobotModel, arm: ArmModel) -> None:
+        """Start at rest."""
+        self.arm = arm
+        self._n = len(arm.joint_names)
+        self._rows = 3 if self._n < 6 else 6
+        self._kinematics = Kinematics(robot.urdf_path, arm.joint_names, arm.mimic, arm.tool_frame, robot.locked)
+        self._profile = VelocityProfile(ACCELERATION, JERK)
+        self._weights = np.array([1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH])[: self._rows]
+        self._near_singular = False
+        self.rest()
+
+    def rest(self) -> None:
+        """Forget twist and reference."""
+        self._twist: tuple[float, ...] = (0.0,) * 6
+        self._rate: tuple[float, ...] = (0.0,) * 6
+        self._reference: tuple[FloatArray, FloatArray] | None = None
+
+    def follow(self, jacobian: FloatArray, velocity: FloatArray) -> None:
+        """The arm was held back: go on from what it does, and let the reference come along."""
+        self._twist = tuple((jacobian @ velocity).tolist())
+        if self._rows == 3:
+            self._twist = (*self._twist[:3], 0.0, 0.0, 0.0)
+        self._reference = None
+
+    def intend(self, wish: ArmWish, ratio: float, q: FloatArray, axes: FloatArray | None, dt: float) -> ArmIntent:
+        """Turn a wish into joint velocities.
+
+        Args:
+            wish: What is wanted; checked before.
+            ratio: 0..1, scales it.
+            q: Positions of the arm's joints, (n,) [rad].
+            axes: Rotation matrix of the wish's frame in the base frame, (3, 3); None for the tool's own.
+            dt: Control period [s].
+        """
+        rotation, position, jacobian = self._kinematics.placement_and_jacobian(q)
+        if wish.jog is not None:
+            return self._jogged(wish.jog[0], wish.jog[1] * ratio, jacobian)
+        axes = rotation if axes is None else axes
+        twist = ratio * np.array(wish.twist)
+        asked = np.concatenate((axes @ twist[:3], axes @ twist[3:]))
+        if not any(wish.twist) and max(map(abs, self._twist)) < _MOVING:
+            self.rest()
+            return self._still(asked, jacobian)
+        inverse, damped, factor = self._inverse(asked, q, jacobian)
+        reason, detail = DriveReason.NONE, ""
+        if damped or factor < 1.0:
+            reason, detail = DriveReason.SINGULARITY, f"arm {self.arm.name} is nearly stretched or folded"
+        target = factor * asked
+        if self._rows == 3:
+            target[3:] = 0.0
+            if asked[3:].any() and reason is DriveReason.NONE:
+                reason, detail = DriveReason.UNREACHABLE, f"arm {self.arm.name} cannot turn its tool"
+        self._twist, self._rate = self._profile.after(self._twist, self._rate, target.tolist(), dt)
+        wanted = np.array(self._twist)
+        corrected = wanted + self._correction(rotation, position, wanted, dt)
+        velocity = inverse @ (self._weights * corrected[: self._rows])
+        rows = self._weights[:, None] * jacobian[: self._rows]
+        inverse_weight = np.asarray(np.linalg.inv(rows.T @ rows + NULL_WEIGHT * np.eye(self._n)))
+        return ArmIntent(asked, velocity, jacobian, inverse_weight, np.ones(self._n, bool), reason, detail)
+
+    def _jogged(self, joint: int, speed: float, jacobian: FloatArray) -> ArmIntent:
+        velocity = np.zeros(self._n)
+        velocity[joint] = speed
+        self.rest()
+        free = np.zeros(self._n, bool)
+        free[joint] = True
+        return ArmIntent(jacobian @ velocity, velocity, jacobian, np.eye(self._n), free, DriveReason.NONE)
+
+    def _still(self, asked: FloatArray, jacobian: FloatArray) -> ArmIntent:
+        n = self._n
+        return ArmIntent(asked, np.zeros(n), jacobian, np.eye(n), np.zeros(n, bool), DriveReason.NONE)
+
+    def _inverse(self, asked: FloatArray, q: FloatArray, jacobian: FloatArray) -> tuple[FloatArray, bool, float]:
+        """Inverse of the weighted Jacobian (n, rows), whether it is damped, and how much of the twist is good."""
+        left, values, right = np.linalg.svd(self._weights[:, None] * jacobian[: self._rows], full_matrices=False)
+        largest, smallest = float(values[0]), float(values[-1])
+        damped = smallest * STOP_AT < largest
+        # Damping begins at the condition number where motion towards it ends (Nakamura and Hanafusa 1986).
+        damping = (largest / STOP_AT) ** 2 - smallest**2 if damped else 0.0
+        inverse = (right.T * (values / (values * values + damping))) @ left.T
+        condition = min(largest / max(smallest, 1e-9), 1e6)
+        if condition < (CLEAR_BELOW if self._near_singular else SLOW_ABOVE):
+            self._near_singular = False
+            return inverse, False, 1.0
+        self._near_singular = True
+        velocity = inverse @ (self._weights * asked[: self._rows])
+        speed = float(np.abs(velocity).max())
+        if speed < _MOVING:
+            return inverse, damped, 1.0
+        ahead = self._kinematics.placement_and_jacobian(q + velocity * (1e-4 / speed))[2]
+        there = np.linalg.svd(self._weights[:, None] * ahead[: self._rows], compute_uv=False)
+        worsening = (min(float(there[0]) / max(float(there[-1]), 1e-9), 1e6) - condition) * speed / 1e-4
+        share = min(max((STOP_AT - condition) / (STOP_AT - SLOW_ABOVE), 0.0), 1.0)
+        leading_in = min(max(worsening / WORSENS, 0.0), 1.0)
+        return inverse, damped and leading_in > 0.0, 1.0 - leading_in * (1.0 - share)
+
+    def _correction(self, rotation: FloatArray, position: FloatArray, twist: FloatArray, dt: float) -> FloatArray:
+        """Twist (6,) that brings the tool back to its reference, across what is commanded.
+
+        The reference moves on with the smoothed twist. Along the twist it is where the tool is: what joints lag behind
+        when they speed up is not made up for, only what they leave the line by.
+        """
+        reference = self._reference
+        if reference is None:
+            off, turned = np.zeros(3), np.zeros(3)
+        else:
+            off = _across(reference[0] - position, twist[:3], LEASH[0])
+            turned = _across(_rotation_vector(reference[1] @ rotation.T), twist[3:], LEASH[1])
+        ahead = position + off + twist[:3] * dt
+        facing = _turned_by(turned + twist[3:] * dt) @ rotation
+        self._reference = ahead, facing
+        return GAIN * np.concatenate((off, turned))
+
+
+def _across(error: FloatArray, along: FloatArray, leash: float) -> FloatArray:
+    """The part of an error (3,) across a direction, no longer than a leash."""
+    size = float(along @ along)
+    if size > _MOVING:
+        error = error - along * (float(along @ error) / size)
+    length = float(np.linalg.norm(error))
+    return np.asarray(error * (leash / length) if length > leash else error)
+
+
+def _rotation_vector(rotation: FloatArray) -> FloatArray:
+    """Rotation vector (3,) [rad] of a small rotation: right to third order."""
+    (_, xy, xz), (yx, _, yz), (zx, zy, _) = rotation.tolist()
+    return np.asarray(0.5 * np.array([zy - yz, xz - zx, yx - xy]))
+
+
+def _turned_by(vector: Sequence[float] | FloatArray) -> FloatArray:
+    """Rotation matrix (3, 3) of a rotation vector [rad] (Rodrigues)."""
+    x, y, z = (float(value) for value in vector)
+    angle = (x * x + y * y + z * z) ** 0.5
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    if angle < 1e-8:
+        return np.asarray(np.eye(3) + skew)
+    first, second = np.sin(angle) / angle, (1.0 - np.cos(angle)) / (angle * angle)
+    return np.asarray(np.eye(3) + first * skew + second * (skew @ skew))

@@ -1,0 +1,246 @@
+"""The control loop: 240 steps a second in a process of its own, so that no page, picture or network delays it.
+
+It takes input and wishes from the server through a `Channel`, and gives states and poses back without ever waiting.
+Input that is older than `MAX_AGE` is not followed: the robot brakes, and moves again only after the sticks were let go.
+"""
+
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import orjson
+
+from robots.errors import ShowtellError
+
+from .drive_command import MAX_AGE
+from .gamepad import RESTING, GamepadState
+from .loop_channel import Channel
+from .loop_deck import Deck
+from .loop_driver import DriveReport, OperatorInput, controls_of
+from .loop_pace import Pace
+from .loop_view import SceneStream
+from .mapping_file import read_mapping_file
+
+POSES_EVERY = 8
+"""Control steps between two views of the world: 30 Hz."""
+STATUS_EVERY = 24
+"""Control steps between two states of affairs, at the latest: 10 Hz."""
+NO_OPERATOR = "nobody holds control"
+SILENT = "the page is silent"
+_KEPT_NOTICES = 6
+_KEPT_LATENCIES = 4000
+
+
+class ControlLoop:
+    """Steps a deck in real time and talks to the server."""
+
+    def __init__(self, deck: Deck, channel: Channel) -> None:
+        """Send the geometry; nothing moves yet."""
+        self._deck = deck
+        self._channel = channel
+        self._pace = Pace(deck.world.DT)
+        self._steps = 0
+        self._input: dict[str, Any] | None = None
+        self._gamepad = RESTING
+        self._fresh = False
+        self._lost = NO_OPERATOR
+        self._notices: deque[tuple[int, str, str]] = deque(maxlen=_KEPT_NOTICES)
+        self._noticed = 0
+        self._latencies: deque[float] = deque(maxlen=_KEPT_LATENCIES)
+        self._shown: tuple[object, ...] = ()
+        self._report = DriveReport("stopped", self._lost)
+        self._demos = deck.demos()
+        self._show_world()
+
+    def run(self) -> None:
+        """Go on until the server goes away.
+
+        Raises:
+            ChannelClosedError: It went away.
+        """
+        self._pace.restart()
+        while True:
+            self.step()
+            self._pace.wait()
+
+    def step(self) -> None:
+        """One control step: read, move, tell."""
+        while messages := self._channel.receive():  # again after a scene was set up: what came meanwhile is newer
+            for message in messages:
+                self._take(orjson.loads(message))
+        wish = self._wish(time.monotonic())
+        try:
+            self._report, told = self._deck.step(wish)
+        except ShowtellError as error:
+            self._notice("error", str(error))
+        else:
+            if self._fresh and self._input is not None:
+                self._latencies.append(time.time() - self._input["stamp"])
+            if told:
+                self._deck_changed("info", told)
+            for event in self._deck.driver.mapping.take_events():
+                self._button(event.name)
+        self._fresh = False
+        self._steps += 1
+        if self._steps % POSES_EVERY == 0:
+            self._channel.send(self._stream.poses())
+        shown = (
+            self._report.state,
+            self._report.reason,
+            self._deck.mode,
+            self._noticed,
+            self._deck.driver.mapping.state.stopped,
+        )
+        if self._steps % STATUS_EVERY == 0 or shown != self._shown:
+            self._shown = shown
+            self._channel.send(b"J" + orjson.dumps(self._status()))
+
+    def _take(self, message: dict[str, Any]) -> None:
+        """Do what a message of the server says."""
+        kind = message["type"]
+        if kind == "input":
+            self._gamepad = GamepadState(tuple(message["axes"]), tuple(message["buttons"]))
+            self._input, self._fresh, self._lost = message, True, ""
+        elif kind == "lost":
+            self._lost, self._input, self._gamepad = message["reason"], None, RESTING
+        elif kind in ("stop", "release"):
+            mapping = self._deck.driver.mapping
+            mapping.stop() if kind == "stop" else mapping.release()
+        elif kind == "set":
+            self._set(message)
+        elif kind == "do":
+            self._do(message)
+
+    def _wish(self, now: float) -> OperatorInput:
+        """What the operator wants, or why that is not known."""
+        last = self._input
+        if last is None:
+            return OperatorInput(fault=self._lost or NO_OPERATOR)
+        age = now - last["received"] + last["late"]
+        fault = ""
+        if age > MAX_AGE:
+            fault = SILENT
+            if self._lost != SILENT:
+                self._lost = SILENT
+                self._notice("warning", f"{SILENT} for {1000 * MAX_AGE:.0f} ms: the robot stops")
+        return OperatorInput(self._gamepad, last["enabled"], age, fault)
+
+    def _set(self, message: dict[str, Any]) -> None:
+        """Choose an arm or a speed."""
+        driver = self._deck.driver
+        try:
+            if message["arm"] is not None:
+                driver.choose(message["arm"])
+            if message["speed"] is not None:
+                driver.mapping.set_speed(message["speed"])
+        except ShowtellError as error:
+            self._notice("error", str(error))
+
+    def _do(self, message: dict[str, Any]) -> None:
+        """A button of the deck."""
+        deck = self._deck
+        actions: dict[str, Callable[[], str]] = {
+            "record": deck.record,
+            "stop": deck.stop,
+            "keep": deck.keep,
+            "success": lambda: deck.label("success"),
+            "failure": lambda: deck.label("failure"),
+            "discard": deck.discard,
+            "redo": deck.redo,
+            "describe": lambda: deck.describe(message["text"]),
+            "replay": lambda: deck.replay(message["demo"]),
+            "reset": lambda: deck.renew(another=False),
+            "another": lambda: deck.renew(another=True),
+        }
+        try:
+            level, told = "info", actions[message["action"]]()
+        except (ShowtellError, OSError) as error:
+            level, told = "error", str(error)
+        self._deck_changed(level, told)
+
+    def _button(self, event: str) -> None:
+        """A button of the gamepad that is meant for the deck: what it does depends on what is on."""
+        mode = self._deck.mode
+        ends = mode in ("recording", "replaying")
+        action = {
+            "record": "stop" if ends else "keep" if mode == "review" else "record",
+            "discard": "discard" if mode in ("recording", "review") else "",
+            "redo": "redo" if mode in ("recording", "review") else "",
+            "success": "success" if mode == "review" else "",
+            "failure": "failure" if mode == "review" else "",
+        }.get(event, "")
+        if action:
+            self._do({"action": action})
+
+    def _deck_changed(self, level: str, told: str) -> None:
+        self._demos = self._deck.demos()
+        self._notice(level, told)
+        if self._deck.changes != self._stream.number:
+            self._show_world()
+            self._pace.restart()
+
+    def _show_world(self) -> None:
+        """Send the geometry of the world that is on now."""
+        self._stream = SceneStream(self._deck.world, self._deck.changes)
+        self._channel.send_surely(b"J" + orjson.dumps(self._status()))
+        self._channel.send_surely(b"S" + orjson.dumps(self._setup()))
+        self._channel.send_surely(self._stream.geometry())
+        self._channel.send(self._stream.poses())
+
+    def _notice(self, level: str, text: str) -> None:
+        self._noticed += 1
+        self._notices.append((self._noticed, level, " ".join(text.split())[:400]))
+
+    def _setup(self) -> dict[str, Any]:
+        """What stays the same as long as the world is on."""
+        driver, keyboard = self._deck.driver, read_mapping_file().keyboard
+        return {
+            "type": "setup",
+            "robot": self._deck.world.robot.name,
+            "choices": driver.choices,
+            "controls": controls_of(driver.mapping),
+            "keys": keyboard.keys,
+            "slow": keyboard.slow,
+        }
+
+    def _status(self) -> dict[str, Any]:
+        """The state of affairs, whole: one that is lost on the way is made good by the next."""
+        report, deck, driver, world = self._report, self._deck, self._deck.driver, self._deck.world
+        state = world.state()
+        typical, latest = self._pace.lateness()
+        return {
+            "type": "status",
+            "time": state.time,
+            "chosen": driver.chosen,
+            "speed": driver.mapping.state.speed_ratio,
+            "manner": driver.manner,
+            "state": report.state,
+            "reason": report.reason,
+            "asked": report.asked,
+            "executed": report.executed,
+            "moving": report.moving,
+            "stopped": driver.mapping.state.stopped,
+            "tools": {
+                name: {"position": each.pose_tool_in_world.position.tolist(), "opening": each.gripper_opening}
+                for name, each in zip(world.robot.arms, state.arms, strict=True)
+            },
+            "q": state.q.tolist(),
+            "held": state.held,
+            "deck": deck.progress(),
+            "demos": self._demos,
+            "notices": list(self._notices),
+            "latency": _quantiles(self._latencies),
+            "late_ms": [1000 * typical, 1000 * latest],
+            "given_up": self._pace.given_up,
+            "world": self._stream.number,
+        }
+
+
+def _quantiles(values: deque[float]) -> dict[str, float] | None:
+    """Median and 99th percentile of latencies [ms]; None before there are any."""
+    if not values:
+        return None
+    ordered = sorted(values)
+    at = [ordered[min(int(share * len(ordered)), len(ordered) - 1)] for share in (0.5, 0.99)]
+    return {"median_ms": 1000 * at[0], "p99_ms": 1000 * at[1], "count": len(ordered)}

@@ -1,0 +1,2 @@
+// A clock in a worker: it goes on evenly while the page draws, which requestAnimationFrame would not.
+setInterval(() => postMessage(0), 8);

@@ -1,0 +1,17 @@
+// The picture is drawn here, so that the page itself never waits for it: sticks and keys are read on time.
+
+import {Viewer} from "./viewer.js";
+
+let viewer = null;
+
+function tell() {
+  postMessage({views: viewer.views, view: viewer.view, frames: viewer.frames, works: Boolean(viewer.gl)});
+}
+
+onmessage = ({data: [name, ...values]}) => {
+  if (name === "start") {
+    viewer = new Viewer(values[0], tell);
+    tell();
+  } else if (name === "frames") tell();
+  else viewer[name](...values);
+};

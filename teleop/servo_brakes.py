@@ -1,0 +1,114 @@
+"""Limits of all joints and of the base together: how speeds change, and what braking takes."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from robots import RobotModel
+from robots.pose import FloatArray
+
+from .servo import POSITION_MARGIN
+from .servo_guard import PARTS
+from .velocity_profile import VelocityProfile
+
+State = tuple[tuple[float, ...], tuple[float, ...]]
+"""Speeds and accelerations."""
+BASE_NAMES = ("base speed", "base turning")
+
+
+class ServoBrakes:
+    """The limits of a robot's n joints, and of its base if it has one: d speeds in all.
+
+    Attributes:
+        names: Names of what moves, d of them.
+        velocity: Limits of the speeds, (d,).
+    """
+
+    def __init__(self, robot: RobotModel) -> None:
+        """Take the limits of a robot."""
+        drive = robot.drive
+        self.names = robot.joint_names + (BASE_NAMES if drive is not None else ())
+        limits = [robot.velocity, robot.acceleration, robot.jerk]
+        lower, upper = robot.lower + POSITION_MARGIN, robot.upper - POSITION_MARGIN
+        if drive is not None:
+            base = [
+                (drive.speed, drive.yaw_rate),
+                (drive.acceleration, drive.yaw_acceleration),
+                (drive.jerk, drive.yaw_jerk),
+            ]
+            limits = [np.concatenate((joints, own)) for joints, own in zip(limits, base, strict=True)]
+            lower, upper = np.append(lower, [-np.inf] * 2), np.append(upper, [np.inf] * 2)
+        self.velocity, self._acceleration, self._jerk = limits
+        self._lower, self._upper = lower, upper
+        self._profile = VelocityProfile(self._acceleration.tolist(), self._jerk.tolist())
+        self._gain = 0.4 * self._jerk / self._acceleration
+        self._at_rest = ((0.0,) * len(self.names),) * 2
+
+    def first(self, velocity: Sequence[float]) -> State:
+        """The state for measured speeds; those above their limits are taken as at them."""
+        held = np.clip(velocity, -self.velocity, self.velocity)
+        return tuple(held.tolist()), (0.0,) * len(self.names)
+
+    def half_times(self, wanted: FloatArray) -> FloatArray:
+        """Distance to rest over speed, (d,) [s], for speeds (d,)."""
+        return np.asarray(0.5 * (np.abs(wanted) / self._acceleration + self._acceleration / self._jerk))
+
+    def room(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """How fast each joint may move down and up so near to its position limits, (d,) each, both >= 0.
+
+        Towards a limit at distance r, speed is held to min(gain r, sqrt(acceleration r)): half of the acceleration
+        limit at speed, and at the end a jerk of gain² v, which is well inside its limit.
+        """
+        n = len(q)
+        allowed = []
+        for distance in (q - self._lower[:n], self._upper[:n] - q):
+            distance = np.maximum(distance, 0.0)
+            speed = np.minimum(self._gain[:n] * distance, np.sqrt(self._acceleration[:n] * distance))
+            allowed.append(np.append(speed, self.velocity[n:]))
+        return allowed[0], allowed[1]
+
+    def after(self, state: State, target: Sequence[float], dt: float) -> State:
+        """The state after a control period on the fastest way to target speeds."""
+        return self._profile.after(*state, target, dt)
+
+    def overrun(self, state: State, target: Sequence[float], q: Sequence[float], dt: float) -> list[int]:
+        """Joints that would pass a position limit if they went on to a state and braked from there.
+
+        Args:
+            state: The state after the control period.
+            target: What they are on the way to: joints that lead away from a limit are never held.
+            q: Where they are now.
+            dt: Control period [s].
+        """
+        if state == self._at_rest:
+            return []
+        found = []
+        for i, (back, ahead) in enumerate(self._profile.travel_to_rest(*state)[: len(q)]):
+            step = state[0][i] * dt
+            at = q[i] + step
+            over = at + ahead > self._upper[i] and ahead + max(step, 0.0) > 0.0 and target[i] > 0.0
+            under = at + back < self._lower[i] and back + min(step, 0.0) < 0.0 and target[i] < 0.0
+            if over or under:
+                found.append(i)
+        return found
+
+    def way(self, state: State, dt: float) -> FloatArray | None:
+        """Where everything gets to if it goes on to a state and brakes from there, (m, d); None for rest.
+
+        Each period, what is executed is the speed at its end. Summed up while braking, that is half a period's way
+        less than the smooth ramp, so that half of the first period's way is left.
+        """
+        if state == self._at_rest:
+            return None
+        rows, _ = self._profile.way_to_rest(*state, PARTS)
+        return np.asarray(np.array(rows) + np.array(state[0]) * (0.5 * dt))
+
+    def is_rest(self, state: State) -> bool:
+        """Whether nothing moves or is about to."""
+        return state == self._at_rest
+
+    @staticmethod
+    def finite(values: Sequence[float]) -> bool:
+        """Whether all values are numbers."""
+        return all(map(math.isfinite, values))

@@ -1,0 +1,208 @@
+"""Keeps a robot's distance: how fast it may approach things, and whether it can still stop before them.
+
+Two rules, one inside the other. A velocity damper (Faverjon and Tournassoud 1987) lets the distance d of a near pair
+shrink no faster than k (d - stop), which makes approaches slow and sliding smooth. Behind it stands a check of what
+would follow: a step is taken only if braking from it, as hard as the limits of acceleration and jerk allow, ends and
+passes everywhere at a distance. Since braking is always such a step, there always is one.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots import CollisionModel, RobotModel
+from robots.near_pairs import NearPairs
+from robots.obstacle import Obstacle
+from robots.pose import FloatArray, Pose
+
+IntArray = NDArray[np.int64]
+
+STOP = 0.007
+"""Distance at which approaches end [m];"""
+LEAST = 0.0055
+"""distance that braking must keep [m]: what the control period and the distance solver leave open is far smaller;"""
+FLOOR = 0.0052
+"""distance below which not even a motion that seems to lead out may bring a pair nearer [m]."""
+PRESS = -0.004
+"""Fingers and held things may overlap so far with what they touch [m]: that presses, or pushes it on;"""
+PRESS_MOST = -0.005
+"""and this is the most [m]."""
+STIFFEST = 10.0
+"""Largest k [1/s]: contact is made at 0.04 m/s at most."""
+SOFTEST = 0.5
+"""Smallest k [1/s]."""
+NEAR = 0.15
+"""Farther pairs are left to the check of braking [m]."""
+TOLERANCE = 2e-6
+"""The distance solver's own [m]."""
+PARTS = tuple(number / 8 for number in range(1, 9))
+"""Parts of the braking time at which the way is looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dampers:
+    """Rows of what may not shrink too fast.
+
+    Attributes:
+        rows: How distances grow with each speed, (m, dofs).
+        least: How fast each may shrink at most, none above zero, (m,) [m/s].
+        pairs: Which pairs they are, (m,).
+    """
+
+    rows: FloatArray
+    least: FloatArray
+    pairs: IntArray
+
+
+class ServoGuard:
+    """Distances of one robot among things, for the steps of a servo.
+
+    Attributes:
+        names: The two names of each pair, k of them.
+        contacts: Which pairs may touch, (k,).
+    """
+
+    def __init__(
+        self, robot: RobotModel, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]] | None = None
+    ) -> None:
+        """Build the geometry; takes some ten milliseconds."""
+        self._robot = robot
+        self._driven = robot.drive is not None
+        held = held or {}
+        self._kind = _kind(obstacles, held)
+        self._pairs = NearPairs(CollisionModel(robot, obstacles, held))
+        self.names, self.contacts = self._pairs.names, self._pairs.contacts
+        self._now, self._end, self._between = (self._pairs.track() for _ in range(3))
+        self._stop = np.where(self.contacts, PRESS, STOP)
+        self._least = np.where(self.contacts, PRESS_MOST, LEAST)
+        self._floor = np.where(self.contacts, PRESS_MOST, FLOOR)
+        n = len(robot.joint_names)
+        spread = np.zeros((self._pairs.levers.shape[1], n + 2))
+        spread[:-2, :n] = np.abs(self._pairs.matrix)
+        spread[-2:, n:] = np.eye(2)
+        self._levers = np.ascontiguousarray(self._pairs.levers @ spread)[:, : n + 2 * self._driven]
+        self._openings: Mapping[str, float] = {}
+
+    def watch(self, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]]) -> bool:
+        """Move what is there already.
+
+        Returns:
+            False if there are other things than before, so that a new guard is needed.
+        """
+        if _kind(obstacles, held) != self._kind:
+            return False
+        shrunk = self._pairs.place(obstacles, held)
+        if shrunk.any():
+            for track in (self._now, self._end):
+                track.shrink(shrunk)
+        return True
+
+    def look(self, q: FloatArray, openings: Mapping[str, float], base: Pose) -> None:
+        """Take the posture that the next questions are about: q (n,) [rad], gaps [m], where the base stands."""
+        self._q, self._openings, self._base = q, openings, base
+        self._pairs.home(base)
+        self._now.move(self._pairs.positions(q, openings), base)
+
+    def dampers(self, wanted: FloatArray, braking: FloatArray) -> Dampers:
+        """What limits a wanted motion.
+
+        Args:
+            wanted: Speeds, (dofs,): of the joints, then of a driven base.
+            braking: Half of the time that each takes to brake from there, (dofs,) [s].
+        """
+        moving = np.abs(wanted) > 0.0
+        slowest = float(braking[moving].max()) if moving.any() else 0.0
+        reach = np.minimum((self._levers @ np.abs(wanted)) * max(2.0 * slowest, 1.0 / STIFFEST), NEAR)
+        which = self._now.below(self._stop + reach)
+        if not len(which):
+            return Dampers(np.zeros((0, len(wanted))), np.zeros(0), which)
+        rows = self._now.gradients(which)[:, : len(wanted)]
+        share = np.abs(rows * wanted)
+        times = (share @ braking) / np.maximum(share.sum(axis=1), 1e-12)
+        gains = np.clip(0.5 / np.maximum(times, 1e-3), SOFTEST, STIFFEST)
+        room = self._now.bounds[which] - self._stop[which]
+        # Where pairs are too near already, only the nearest may not come nearer: of two that squeeze a link from both
+        # sides, one would otherwise forbid the way out of the other.
+        least = -gains * (room - min(float(room.min()), 0.0))
+        return Dampers(rows, least, which)
+
+    def offending(self, way: FloatArray, bases: Sequence[Pose]) -> IntArray:
+        """Pairs that come too near on a way; empty if the way may be gone.
+
+        Args:
+            way: Where joints and base are after parts of the way, as differences from here, (m, dofs).
+            bases: Where the base stands then, m of them.
+        """
+        least, now, end = self._least, self._now, self._end
+        steps = np.abs(np.diff(way, axis=0, prepend=np.zeros((1, way.shape[1]))))
+        travel = self._levers @ steps.sum(axis=0)
+        end.move(self._positions(way[-1]), bases[-1])
+        near = end.below(least)
+        bad = near[self._worse(near, way[-1])] if len(near) else near
+        # Half-way, a pair is at least so far apart: what both ends say, less what lies between.
+        doubtful = (now.bounds + end.bounds - travel < 2.0 * least) & (end.bounds >= least)
+        which = np.flatnonzero(doubtful)
+        if len(which):
+            now.refine(which)
+            end.refine(which)
+            start = now.bounds[which]
+            which = which[(start + end.bounds[which] - travel[which] < 2.0 * least[which]) & (start >= least[which])]
+        if len(which):
+            bad = np.concatenate((bad, which[self._passes_too_near(which, way, bases, steps)]))
+        return bad
+
+    def moved_by(self, pairs: IntArray) -> NDArray[np.bool_]:
+        """Which speeds change distances of pairs, (dofs,)."""
+        return np.asarray((self._levers[pairs] > 0.0).any(axis=0))
+
+    def _positions(self, way: FloatArray) -> FloatArray:
+        return self._pairs.positions(self._q + way[: len(self._q)], self._openings)
+
+    def _worse(self, near: IntArray, way: FloatArray) -> NDArray[np.bool_]:
+        """Which pairs that end too near are not on their way out."""
+        before = self._now.refine(near)
+        after = self._end.bounds[near]
+        leading = self._now.gradients(near)[:, : len(way)] @ way >= 0.0
+        kept = after >= before - TOLERANCE
+        fine = kept & ((after >= self._floor[near]) | (leading & (before < self._floor[near])))
+        excess = before - self._least[near]
+        lowest = float(excess.min())
+        if lowest < 0.0:
+            # One that is deeper in decides; see `dampers`.
+            fine |= (excess < 0.0) & (excess > lowest + 1e-4) & (after - self._least[near] >= lowest)
+        return np.asarray(~fine)
+
+    def _passes_too_near(
+        self, which: IntArray, way: FloatArray, bases: Sequence[Pose], steps: FloatArray
+    ) -> NDArray[np.bool_]:
+        """Which pairs cannot be shown to keep their distance between the looks at the way."""
+        bad = np.zeros(len(which), dtype=bool)
+        start = self._now.bounds[which]
+        stretches = [(0, len(way), np.arange(len(which)), start, self._end.bounds[which])]
+        while stretches:
+            first, last, some, before, after = stretches.pop()
+            pairs = which[some]
+            travel = self._levers[pairs] @ steps[first:last].sum(axis=0)
+            doubtful = before + after - travel < 2.0 * self._least[pairs]
+            if not doubtful.any():
+                continue
+            some, before, after = some[doubtful], before[doubtful], after[doubtful]
+            if last - first == 1:
+                bad[some] = True
+                continue
+            middle = (first + last) // 2
+            self._between.jump(self._positions(way[middle - 1]), bases[middle - 1])
+            between = self._between.refine(which[some])
+            stretches += [(first, middle, some, before, between), (middle, last, some, between, after)]
+        return bad
+
+
+def _kind(obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]]) -> tuple[object, ...]:
+    """What must stay for things to be moved only: their order, names and shapes."""
+    return tuple(
+        (arm, each.name, each.kind, each.size, None if each.corners is None else each.corners.tobytes())
+        for arm, things in (("", obstacles), *sorted(held.items()))
+        for each in things
+    )
