@@ -12,7 +12,6 @@ from robots.pose import FloatArray
 
 from .drive_command import ArmWish
 from .servo_reason import DriveReason
-from .velocity_profile import VelocityProfile
 
 LENGTH = 0.3
 """So many metres of the tool's motion weigh as much as a radian [m]."""
@@ -22,15 +21,16 @@ CLEAR_BELOW = 15.0
 """Once slowed, an arm counts as near a singular posture down to this condition number: no flicker in what is shown."""
 WORSENS = 0.5
 """Condition numbers a second from which motion counts as leading in; below, the slow-down sets in smoothly [1/s]."""
-ACCELERATION = (1.5, 1.5, 1.5, 5.0, 5.0, 5.0)
-JERK = (25.0, 25.0, 25.0, 80.0, 80.0, 80.0)
-"""How the tool's speed changes [m/s², rad/s², m/s³, rad/s³]: slow enough for joints to follow on a straight line."""
 GAIN = 5.0
 """How fast the tool comes back to its reference [1/s]."""
 LEASH = (0.003, 0.02)
 """The reference is never farther ahead than this [m, rad]."""
 NULL_WEIGHT = 2e-3
 """Weight of motion that does not move the tool, beside 1 for motion that does [m²/rad²]: the elbow gives way first."""
+FASTEST = 0.98
+"""Part of the joints' speed limits that wishes may use; the rest is for coming back to the reference."""
+ENDED = 2e-3
+"""A motion that was let go and is slower than this has ended [m/s or rad/s]."""
 _MOVING = 1e-9
 
 
@@ -66,23 +66,35 @@ class ArmServo:
         self._n = len(arm.joint_names)
         self._rows = 3 if self._n < 6 else 6
         self._kinematics = Kinematics(robot.urdf_path, arm.joint_names, arm.mimic, arm.tool_frame, robot.locked)
-        self._profile = VelocityProfile(ACCELERATION, JERK)
         self._weights = np.array([1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH])[: self._rows]
         self._near_singular = False
         self.rest()
 
     def rest(self) -> None:
         """Forget twist and reference."""
-        self._twist: tuple[float, ...] = (0.0,) * 6
-        self._rate: tuple[float, ...] = (0.0,) * 6
+        self._twist: FloatArray = np.zeros(6)
         self._reference: tuple[FloatArray, FloatArray] | None = None
+        self._ideal: tuple[FloatArray, FloatArray, FloatArray] | None = None
 
     def follow(self, jacobian: FloatArray, velocity: FloatArray) -> None:
         """The arm was held back: go on from what it does, and let the reference come along."""
-        self._twist = tuple((jacobian @ velocity).tolist())
+        self._twist = jacobian @ velocity
         if self._rows == 3:
-            self._twist = (*self._twist[:3], 0.0, 0.0, 0.0)
+            self._twist[3:] = 0.0
         self._reference = None
+
+    def proceed(self, before: FloatArray, after: FloatArray, target: FloatArray, dt: float) -> None:
+        """The arm's joints went from one velocity towards a target (n,): move the reference on.
+
+        Joints change their speeds together, so that the twist changes along a straight line too, as far as they do.
+        """
+        if self._ideal is None:
+            return
+        wanted, position, rotation = self._ideal
+        left = float(np.linalg.norm(target - before))
+        part = min(float(np.linalg.norm(after - before)) / left, 1.0) if left > _MOVING else 1.0
+        self._twist = self._twist + part * (wanted - self._twist)
+        self._reference = position + self._twist[:3] * dt, _turned_by(self._twist[3:] * dt) @ rotation
 
     def intend(self, wish: ArmWish, ratio: float, q: FloatArray, axes: FloatArray | None, dt: float) -> ArmIntent:
         """Turn a wish into joint velocities.
@@ -100,21 +112,24 @@ class ArmServo:
         axes = rotation if axes is None else axes
         twist = ratio * np.array(wish.twist)
         asked = np.concatenate((axes @ twist[:3], axes @ twist[3:]))
-        if not any(wish.twist) and max(map(abs, self._twist)) < _MOVING:
+        if not any(wish.twist) and float(np.abs(self._twist).max()) < ENDED:
             self.rest()
             return self._still(asked, jacobian)
         inverse, damped, factor = self._inverse(asked, q, jacobian)
         reason, detail = DriveReason.NONE, ""
         if damped or factor < 1.0:
             reason, detail = DriveReason.SINGULARITY, f"arm {self.arm.name} is nearly stretched or folded"
-        target = factor * asked
+        wanted = factor * asked
         if self._rows == 3:
-            target[3:] = 0.0
+            wanted[3:] = 0.0
             if asked[3:].any() and reason is DriveReason.NONE:
                 reason, detail = DriveReason.UNREACHABLE, f"arm {self.arm.name} cannot turn its tool"
-        self._twist, self._rate = self._profile.after(self._twist, self._rate, target.tolist(), dt)
-        wanted = np.array(self._twist)
-        corrected = wanted + self._correction(rotation, position, wanted, dt)
+        over = np.abs(inverse @ (self._weights * wanted[: self._rows])) / (FASTEST * self.arm.velocity)
+        if (ratio := float(over.max())) > 1.0:
+            wanted = wanted / ratio
+            if reason is not DriveReason.SINGULARITY:
+                reason, detail = DriveReason.VELOCITY_LIMIT, self.arm.joint_names[int(np.argmax(over))]
+        corrected = wanted + self._correction(rotation, position, wanted)
         velocity = inverse @ (self._weights * corrected[: self._rows])
         rows = self._weights[:, None] * jacobian[: self._rows]
         inverse_weight = np.asarray(np.linalg.inv(rows.T @ rows + NULL_WEIGHT * np.eye(self._n)))
@@ -156,21 +171,18 @@ class ArmServo:
         leading_in = min(max(worsening / WORSENS, 0.0), 1.0)
         return inverse, damped and leading_in > 0.0, 1.0 - leading_in * (1.0 - share)
 
-    def _correction(self, rotation: FloatArray, position: FloatArray, twist: FloatArray, dt: float) -> FloatArray:
-        """Twist (6,) that brings the tool back to its reference, across what is commanded.
+    def _correction(self, rotation: FloatArray, position: FloatArray, wanted: FloatArray) -> FloatArray:
+        """Twist (6,) that brings the tool back to its reference, across its motion.
 
-        The reference moves on with the smoothed twist. Along the twist it is where the tool is: what joints lag behind
-        when they speed up is not made up for, only what they leave the line by.
+        The reference moves on with the ideal twist. Along that, it is where the tool is: what joints lag behind when
+        they speed up is not made up for, only what they leave the line by.
         """
-        reference = self._reference
-        if reference is None:
-            off, turned = np.zeros(3), np.zeros(3)
-        else:
+        reference, twist = self._reference, self._twist
+        off, turned = np.zeros(3), np.zeros(3)
+        if reference is not None:
             off = _across(reference[0] - position, twist[:3], LEASH[0])
             turned = _across(_rotation_vector(reference[1] @ rotation.T), twist[3:], LEASH[1])
-        ahead = position + off + twist[:3] * dt
-        facing = _turned_by(turned + twist[3:] * dt) @ rotation
-        self._reference = ahead, facing
+        self._ideal = wanted, position + off, _turned_by(turned) @ rotation
         return GAIN * np.concatenate((off, turned))
 
 

@@ -15,12 +15,15 @@ from .errors import TeleopError
 from .gamepad import RESTING, GamepadState
 from .record import STATE_EVERY
 from .recorder import Recorder
+from .servo_reason import DriveReason
 from .servo_result import RobotServoResult
 
 SafetyState = Literal["ok", "slowed", "stopped"]
 BOTH, WHEELS = "both", "wheels"
 """What may be chosen besides an arm's name."""
 _MOVING = 1e-6
+_GATHERING = {DriveReason.NONE, DriveReason.ACCELERATION_LIMIT}
+"""A robot that gathers speed or brakes is not held back by anything."""
 _AXES = {
     "x": "away and back",
     "y": "left and right",
@@ -187,7 +190,10 @@ def report_of(result: RobotServoResult, fault: str) -> DriveReport:
     speeds = [(_speed(each.asked), _speed(each.executed)) for each in result.arms.values()]
     asked, executed = max(speeds, key=lambda pair: max(pair))
     moving = bool(np.abs(result.joint_velocity).max() > _MOVING or np.abs(result.base_twist).max() > _MOVING)
-    return DriveReport(result.state, fault or result.reason, asked, executed, moving)
+    state, reason = result.state, fault or result.reason
+    if state == "slowed" and {result.base_reason, *(each.reason for each in result.arms.values())} <= _GATHERING:
+        state, reason = "ok", ""
+    return DriveReport(state, reason, asked, executed, moving)
 
 
 def _speed(twist: FloatArray) -> float:

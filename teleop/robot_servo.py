@@ -112,8 +112,12 @@ class RobotServo:
             "base": (DriveReason.NONE, "")
         }
         target = self._limited(wanted, intents, q, reasons) if wanted.any() else wanted
-        velocity = self._advance(target, q, base, dt, reasons)
-        return self._result(command, stop, why, intents, wanted, target, velocity, turn, reasons)
+        before = np.array(self._state[0])
+        velocity = self._advance(target, stop is DriveReason.NONE, q, base, dt, reasons)
+        if stop is DriveReason.NONE:
+            for name, where in self._slices.items():
+                self._arms[name].proceed(before[where], velocity[where], target[where], dt)
+        return self._result(command, stop, why, intents, velocity, turn, reasons)
 
     def _checked(self, view: ServoView, dt: float) -> FloatArray:
         if view.q.shape != (self._n,) or not ServoBrakes.finite(view.q.tolist()):
@@ -246,6 +250,7 @@ class RobotServo:
     def _advance(
         self,
         target: FloatArray,
+        together: bool,
         q: FloatArray,
         base: Pose,
         dt: float,
@@ -254,7 +259,7 @@ class RobotServo:
         """Take the step towards the target speeds from which braking is safe, or brake. Returns the speeds (d,)."""
         assert self._state is not None
         goal = target.tolist()
-        state = self._within_positions(goal, q, dt, reasons)
+        state = self._within_positions(goal, together, q, dt, reasons)
         bad = self._offending(state, q, base, dt)
         if len(bad):
             # Only what moves the pairs that came too near brakes; where that is not enough, everything does.
@@ -265,18 +270,19 @@ class RobotServo:
                     if any(goal[where]):
                         self._note_pair(reasons, name, int(bad[0]))
             goal = np.where(moved, 0.0, target).tolist()
-            state = self._within_positions(goal, q, dt, reasons)
+            state = self._within_positions(goal, False, q, dt, reasons)
             if any(goal) and len(self._offending(state, q, base, dt)):
                 state = self._brakes.after(self._state, [0.0] * self._d, dt)
         self._state = state
         return np.array(state[0])
 
     def _within_positions(
-        self, goal: list[float], q: FloatArray, dt: float, reasons: dict[str, tuple[DriveReason, str]]
+        self, goal: list[float], together: bool, q: FloatArray, dt: float, reasons: dict[str, tuple[DriveReason, str]]
     ) -> State:
         """The state after the period, joints that would overrun their position limits braking."""
         assert self._state is not None
-        state = self._brakes.after(self._state, goal, dt)
+        change = self._brakes.together if together else self._brakes.after
+        state = change(self._state, goal, dt)
         over = self._brakes.overrun(state, goal, q.tolist(), dt)
         if over:
             for i in over:
@@ -302,8 +308,6 @@ class RobotServo:
         stop: DriveReason,
         why: str,
         intents: Mapping[str, ArmIntent],
-        wanted: FloatArray,
-        target: FloatArray,
         velocity: FloatArray,
         turn: FloatArray,
         reasons: dict[str, tuple[DriveReason, str]],

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Collection
 from http import HTTPStatus
 from multiprocessing.process import BaseProcess
+from typing import Any
 
 import orjson
 from websockets.asyncio.server import ServerConnection, serve
@@ -78,6 +79,13 @@ class PageServer:
         self._channel: Channel | None = None
         self._latest: dict[str, str | bytes] = {}
         self._ended: asyncio.Future[None] | None = None
+
+    @property
+    def status(self) -> dict[str, Any]:
+        """What the control loop told last, as every page gets it; empty before it runs."""
+        told = self._latest.get("J")
+        status: dict[str, Any] = {} if told is None else orjson.loads(told)
+        return status
 
     async def run(self, started: Callable[[str], None]) -> None:
         """Serve until cancelled.

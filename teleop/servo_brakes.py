@@ -42,6 +42,13 @@ class ServoBrakes:
         self.velocity, self._acceleration, self._jerk = limits
         self._lower, self._upper = lower, upper
         self._profile = VelocityProfile(self._acceleration.tolist(), self._jerk.tolist())
+        groups = [robot.slice_of(arm) for arm in robot.arms]
+        if drive is not None:
+            groups.append(slice(len(robot.joint_names), len(self.names)))
+        self._groups = [
+            (each, VelocityProfile(self._acceleration[each].tolist(), self._jerk[each].tolist(), together=True))
+            for each in groups
+        ]
         self._gain = 0.4 * self._jerk / self._acceleration
         self._at_rest = ((0.0,) * len(self.names),) * 2
 
@@ -69,8 +76,18 @@ class ServoBrakes:
         return allowed[0], allowed[1]
 
     def after(self, state: State, target: Sequence[float], dt: float) -> State:
-        """The state after a control period on the fastest way to target speeds."""
+        """The state after a control period on the fastest way to target speeds, each on its own."""
         return self._profile.after(*state, target, dt)
+
+    def together(self, state: State, target: Sequence[float], dt: float) -> State:
+        """As `after`, with the joints of an arm in proportion, so that its tool keeps to its line."""
+        velocity: list[float] = []
+        acceleration: list[float] = []
+        for where, profile in self._groups:
+            speeds, rates = profile.after(state[0][where], state[1][where], target[where], dt)
+            velocity += speeds
+            acceleration += rates
+        return tuple(velocity), tuple(acceleration)
 
     def overrun(self, state: State, target: Sequence[float], q: Sequence[float], dt: float) -> list[int]:
         """Joints that would pass a position limit if they went on to a state and braked from there.

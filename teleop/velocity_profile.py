@@ -9,15 +9,21 @@ _ANY_PERIOD = 1.0 / 240.0
 
 
 class VelocityProfile:
-    """Time-optimal jerk-limited velocity changes of n joints, each on its own. Keeps nothing between two calls."""
+    """Time-optimal jerk-limited velocity changes of n joints. Keeps nothing between two calls."""
 
-    def __init__(self, max_acceleration: Sequence[float], max_jerk: Sequence[float]) -> None:
-        """Set the limits, n each [rad/s², rad/s³]."""
+    def __init__(self, max_acceleration: Sequence[float], max_jerk: Sequence[float], *, together: bool = False) -> None:
+        """Set the limits, n each [rad/s², rad/s³].
+
+        Args:
+            max_acceleration: Of each joint.
+            max_jerk: Of each joint.
+            together: Whether all reach their targets at once, in proportion where they can; else each on its own.
+        """
         n = len(max_acceleration)
         self._otg = Ruckig(n, _ANY_PERIOD)
         self._input = InputParameter(n)
         self._input.control_interface = ControlInterface.Velocity
-        self._input.synchronization = Synchronization.No
+        self._input.synchronization = Synchronization.Phase if together else Synchronization.No
         self._input.max_acceleration = list(max_acceleration)
         self._input.max_jerk = list(max_jerk)
         self._input.current_position = [0.0] * n

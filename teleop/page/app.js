@@ -233,6 +233,7 @@ function keysFor(controls, keys) {
 }
 
 function showViews() {
+  document.body.dataset.pictures = String(stage.frames);
   const names = stage.views;
   const box = byId("views");
   if (box.dataset.names !== names.join()) {

@@ -12,6 +12,5 @@ onmessage = ({data: [name, ...values]}) => {
   if (name === "start") {
     viewer = new Viewer(values[0], tell);
     tell();
-  } else if (name === "frames") tell();
-  else viewer[name](...values);
+  } else viewer[name](...values);
 };

@@ -59,6 +59,7 @@ const SHADOW_SIZE = 1024;
 const SUN = unit([0.15, -0.35, 1.0]);
 const MOVE_MS = 350;
 const PIXELS = [0.6, 0.8, 1]; // of those that the screen has
+const TELL_EVERY = 5;
 const SLOW_MS = 150;
 /** Direction from which each view looks (x away from the robot, y left, z up) and its distance in radii. */
 const VIEWS = {
@@ -290,6 +291,7 @@ export class Viewer {
     gl.bindTexture(gl.TEXTURE_2D, scene.texture);
     this.drawMeshes();
     this.frames += 1;
+    if (this.frames % TELL_EVERY === 1) this.changed();
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     if (this.flight) this.redraw();

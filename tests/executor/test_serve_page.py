@@ -1,0 +1,224 @@
+"""A real headless Chromium drives each robot through the page."""
+
+import asyncio
+import shutil
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from executor.bench.page import STUB
+from executor.browser import Browser, Tab
+from teleop import check_replay, load_demo
+from teleop.loop_process import LoopSettings
+from teleop.server import PageServer
+
+pytestmark = pytest.mark.skipif(
+    not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))),
+    reason="needs a browser: apt-get install -y chromium",
+)
+
+ARM = {"board": "arm", "tabletop": "left", "ordering": "arm"}
+MOVED = 0.004
+"""Far beyond what a robot at rest gives way [m]."""
+
+
+class Visit:
+    """A page of one server in a browser."""
+
+    def __init__(self, server: PageServer, tab: Tab, arm: str) -> None:
+        self.server, self.tab, self.arm = server, tab, arm
+
+    @property
+    def status(self) -> dict[str, Any]:
+        return self.server.status
+
+    @property
+    def tool(self) -> np.ndarray:
+        return np.array(self.status["tools"][self.arm]["position"])
+
+    async def until(self, test: Callable[[], Any], seconds: float = 10.0) -> None:
+        deadline = asyncio.get_running_loop().time() + seconds
+        while not test():
+            assert asyncio.get_running_loop().time() < deadline, f"did not happen: {self.status}"
+            await asyncio.sleep(0.02)
+
+    async def moves(self, axis: int, sign: int) -> None:
+        """Wait until the tool has moved one way from where it is."""
+        start = self.tool
+        await self.until(lambda: sign * (self.tool - start)[axis] > MOVED)
+
+    async def rests(self) -> None:
+        await self.until(lambda: not self.status["moving"])
+
+    async def ready(self) -> None:
+        await self.until(lambda: self.status["state"] == "ok")
+
+    async def in_mode(self, mode: str) -> None:
+        await self.until(lambda: self.status["deck"]["mode"] == mode)
+        await self.tab.until(f"document.getElementById('deck').dataset.mode === '{mode}'")
+
+
+@asynccontextmanager
+async def visit(scene: str, folder: Path, *, width: int = 1280, height: int = 800) -> AsyncIterator[Visit]:
+    server = PageServer(LoopSettings(scene, None, 3, folder))
+    ready: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+    serving = asyncio.create_task(server.run(ready.set_result))
+    try:
+        async with Browser() as browser:
+            await asyncio.wait((ready, serving), return_when=asyncio.FIRST_COMPLETED)
+            if serving.done():
+                serving.result()
+            tab = await browser.tab()
+            await tab.start(width, height, phone=width < 600, first=STUB)
+            await tab.open(ready.result())
+            await tab.until("document.body?.dataset.control === 'yours' && Number(document.body.dataset.pictures) > 0")
+            yield Visit(server, tab, ARM[scene])
+    finally:
+        serving.cancel()
+        await asyncio.gather(serving, return_exceptions=True)
+
+
+@pytest.mark.parametrize("scene", list(ARM))
+def test_a_browser_drives_records_describes_and_replays(scene: str, tmp_path: Path) -> None:
+    async def test() -> None:
+        async with visit(scene, tmp_path) as page:
+            tab = page.tab
+            await page.ready()
+            await tab.value("void (window.stick = [0.6, 0, 0, 0])")  # right is -y
+            await page.moves(1, -1)
+            await tab.value("void (window.stick = [0, 0, 0, 0])")
+            await page.rests()
+            await tab.key("keyDown", "e", "KeyE")
+            await page.moves(2, 1)
+            await tab.key("keyUp", "e", "KeyE")
+            await page.rests()
+
+            await tab.click("#record")
+            await page.in_mode("recording")
+            await page.ready()
+            await tab.key("keyDown", "d", "KeyD")
+            await page.moves(1, -1)
+            await tab.key("keyUp", "d", "KeyD")
+            await tab.key("keyDown", "c", "KeyC")
+            await page.until(lambda: page.status["tools"][page.arm]["opening"] < 0.03)
+            await tab.key("keyUp", "c", "KeyC")
+            await page.rests()
+            await tab.click("#sentence")
+            await tab.type("reach to the right and close")
+            await tab.click("#describe")
+            await page.until(lambda: page.status["deck"]["sentences"] == 1)
+            await tab.click("#stop-deck")
+            await page.in_mode("review")
+            await tab.click("#success")
+            await page.until(lambda: page.status["deck"]["outcome"] == "success")
+            await tab.click("#keep")
+            await page.in_mode("idle")
+            await tab.until("document.getElementById('demos').options.length === 1")
+            await tab.click("#replay")
+            await page.in_mode("replaying")
+            await page.until(lambda: page.status["deck"]["mode"] == "idle", 20)
+            assert "largest difference from the recording 0 " in page.status["notices"][-1][2]
+            assert page.status["latency"]["median_ms"] < 50  # 4 ms where nothing else runs
+            print(f"{scene}: input to command {page.status['latency']}")
+            assert tab.complaints == []
+
+    asyncio.run(test())
+    (path,) = tmp_path.glob("*.mcap")
+    demo = load_demo(path)
+    assert demo.utterances == ("reach to the right and close",)
+    assert demo.outcome.outcome == "success"
+    assert check_replay(demo).max_error == 0.0
+
+
+def test_a_page_that_freezes_or_is_closed_stops_the_robot(tmp_path: Path) -> None:
+    async def test() -> None:
+        async with visit("board", tmp_path) as page:
+            tab = page.tab
+            await page.ready()
+            await tab.key("keyDown", "d", "KeyD")
+            await page.moves(1, -1)
+            await tab.send("Debugger.enable")
+            await tab.send("Debugger.pause")
+            await page.until(lambda: page.status["reason"] == "the page is silent")
+            await page.rests()
+            await tab.send("Debugger.resume")
+            await page.until(lambda: page.status["reason"].startswith("let go of the sticks"))  # D is still held
+            await tab.until("document.getElementById('notices').textContent.includes('the page is silent')")
+            await tab.key("keyUp", "d", "KeyD")
+            await page.ready()
+
+            await tab.key("keyDown", "d", "KeyD")
+            await page.moves(1, -1)
+            await tab.key("keyDown", "Escape", "Escape")  # the emergency stop, from the keyboard
+            await page.until(lambda: page.status["stopped"])
+            await page.rests()
+            await tab.key("keyUp", "d", "KeyD")
+            await tab.until("document.getElementById('stop').getAttribute('aria-pressed') === 'true'")
+            await tab.click("#stop")
+            await page.ready()
+
+            await tab.click("#hold")  # nothing moves unless F is held
+            await tab.key("keyDown", "a", "KeyA")
+            await page.until(lambda: page.status["reason"] == "not enabled (hold the enabling button to move)")
+            await tab.key("keyDown", "f", "KeyF")
+            await page.moves(1, 1)
+            assert tab.complaints == []
+            await tab.send("Page.close")
+            await page.until(lambda: page.status["reason"] == "the page that held control is gone")
+            await page.rests()
+
+    asyncio.run(test())
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 844)])
+def test_the_page_is_whole_at_desktop_and_phone_size(width: int, height: int, tmp_path: Path) -> None:
+    async def test() -> None:
+        async with visit("tabletop", tmp_path, width=width, height=height) as page:
+            tab = page.tab
+            await page.ready()
+            picture = tmp_path / "page.png"
+            await tab.screenshot(picture)
+            with Image.open(picture) as image:
+                assert image.size == (width, height)
+                middle = np.asarray(image.convert("RGB").crop((width // 8, height // 5, width // 2, height // 2)))
+            assert len(np.unique(middle.reshape(-1, 3), axis=0)) > 200  # a shaded scene, not an empty canvas
+            assert await tab.value("document.documentElement.scrollWidth <= innerWidth")
+            await tab.value("document.querySelector('#help summary').click()")
+            assert await tab.value("document.getElementById('legend').rows.length") > 12
+            await tab.value("scrollTo(0, 1e6)")
+            box = await tab.value(
+                "(({top, bottom}) => [top, bottom])(document.getElementById('stop').getBoundingClientRect())"
+            )
+            assert 0 <= box[0] < box[1] <= height  # always in sight
+            tree = await tab.send("Accessibility.getFullAXTree")
+            roles = {"button", "slider", "textbox", "checkbox", "combobox", "radio", "radiogroup", "link"}
+            unnamed = [
+                node
+                for node in tree["nodes"]
+                if node.get("role", {}).get("value") in roles and not node.get("name", {}).get("value")
+            ]
+            assert unnamed == []
+            await tab.value("[...document.querySelectorAll('#views button')].at(-1).click()")
+            await tab.until("[...document.querySelectorAll('#views button')].at(-1).ariaChecked === 'true'")
+            await tab.value("document.querySelector('#arms [data-arm=right]').click()")
+            await page.until(lambda: page.status["chosen"] == "right")
+            assert await tab.value("location.hash + location.search") == ""  # the token is out of sight
+            assert tab.complaints == []
+
+    asyncio.run(test())
+
+
+def test_a_wrong_token_shows_what_to_do(tmp_path: Path) -> None:
+    async def test() -> None:
+        async with visit("board", tmp_path) as page:
+            await page.tab.value("sessionStorage.clear()")
+            address = page.server.url.split("#")[0]
+            await page.tab.open(address)
+            await page.tab.until("document.getElementById('safety-reason')?.textContent.includes('carries the token')")
+
+    asyncio.run(test())
