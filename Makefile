@@ -14,6 +14,7 @@ demo: install
 	$(BIN)/showtell demo
 
 test: lint
+	@$(PYTHON) tools/system_libraries.py --tests
 	$(BIN)/python -m pytest -n $(WORKERS)
 
 slow: install

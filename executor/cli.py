@@ -21,6 +21,7 @@ from executor.commands import (
     record,
     replay,
     robots,
+    serve,
 )
 from executor.commands.output import ShowtellGroup
 
@@ -57,6 +58,7 @@ def _root(
 
 demo.add_to(app)
 record.add_to(app)
+serve.add_to(app)
 app.add_typer(import_demos.app, name="import")
 demos.add_to(app)
 replay.add_to(app)

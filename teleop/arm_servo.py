@@ -12,6 +12,7 @@ from robots.pose import FloatArray
 
 from .drive_command import ArmWish
 from .servo_reason import DriveReason
+from .velocity_profile import VelocityProfile
 
 LENGTH = 0.3
 """So many metres of the tool's motion weigh as much as a radian [m]."""
@@ -29,6 +30,10 @@ NULL_WEIGHT = 2e-3
 """Weight of motion that does not move the tool, beside 1 for motion that does [m²/rad²]: the elbow gives way first."""
 FASTEST = 0.98
 """Part of the joints' speed limits that wishes may use; the rest is for coming back to the reference."""
+SHARE = 0.8
+"""Part of the joints' acceleration limits that changes of the twist use."""
+MOST_ACCELERATION = 3.0
+"""However quick the joints are, the tool is not jerked about [m/s² or rad/s²]."""
 ENDED = 2e-3
 """A motion that was let go and is slower than this has ended [m/s or rad/s]."""
 _MOVING = 1e-9
@@ -68,13 +73,15 @@ class ArmServo:
         self._kinematics = Kinematics(robot.urdf_path, arm.joint_names, arm.mimic, arm.tool_frame, robot.locked)
         self._weights = np.array([1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH])[: self._rows]
         self._near_singular = False
+        self._profile = VelocityProfile((1.0,) * 6, (1.0,) * 6, together=True)
         self.rest()
 
     def rest(self) -> None:
         """Forget twist and reference."""
         self._twist: FloatArray = np.zeros(6)
         self._reference: tuple[FloatArray, FloatArray] | None = None
-        self._ideal: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        self._ideal: tuple[FloatArray, FloatArray] | None = None
+        self._rate: tuple[float, ...] = (0.0,) * 6
 
     def follow(self, jacobian: FloatArray, velocity: FloatArray) -> None:
         """The arm was held back: go on from what it does, and let the reference come along."""
@@ -83,18 +90,11 @@ class ArmServo:
             self._twist[3:] = 0.0
         self._reference = None
 
-    def proceed(self, before: FloatArray, after: FloatArray, target: FloatArray, dt: float) -> None:
-        """The arm's joints went from one velocity towards a target (n,): move the reference on.
-
-        Joints change their speeds together, so that the twist changes along a straight line too, as far as they do.
-        """
-        if self._ideal is None:
-            return
-        wanted, position, rotation = self._ideal
-        left = float(np.linalg.norm(target - before))
-        part = min(float(np.linalg.norm(after - before)) / left, 1.0) if left > _MOVING else 1.0
-        self._twist = self._twist + part * (wanted - self._twist)
-        self._reference = position + self._twist[:3] * dt, _turned_by(self._twist[3:] * dt) @ rotation
+    def proceed(self, dt: float) -> None:
+        """The step was taken as intended: move the reference on."""
+        if self._ideal is not None:
+            position, rotation = self._ideal
+            self._reference = position + self._twist[:3] * dt, _turned_by(self._twist[3:] * dt) @ rotation
 
     def intend(self, wish: ArmWish, ratio: float, q: FloatArray, axes: FloatArray | None, dt: float) -> ArmIntent:
         """Turn a wish into joint velocities.
@@ -129,7 +129,8 @@ class ArmServo:
             wanted = wanted / ratio
             if reason is not DriveReason.SINGULARITY:
                 reason, detail = DriveReason.VELOCITY_LIMIT, self.arm.joint_names[int(np.argmax(over))]
-        corrected = wanted + self._correction(rotation, position, wanted)
+        self._twist = self._smoothed(wanted, inverse, dt)
+        corrected = self._twist + self._correction(rotation, position)
         velocity = inverse @ (self._weights * corrected[: self._rows])
         rows = self._weights[:, None] * jacobian[: self._rows]
         inverse_weight = np.asarray(np.linalg.inv(rows.T @ rows + NULL_WEIGHT * np.eye(self._n)))
@@ -167,11 +168,36 @@ class ArmServo:
         ahead = self._kinematics.placement_and_jacobian(q + velocity * (1e-4 / speed))[2]
         there = np.linalg.svd(self._weights[:, None] * ahead[: self._rows], compute_uv=False)
         worsening = (min(float(there[0]) / max(float(there[-1]), 1e-9), 1e6) - condition) * speed / 1e-4
+        # What counts is where it gets to before it can stop. There, the smallest singular value falls about evenly.
+        present = np.abs(inverse @ (self._weights * self._twist[: self._rows]))
+        braking = float((present / self.arm.acceleration + self.arm.acceleration / self.arm.jerk).max())
+        ahead_by = max(worsening, 0.0) * min(float(present.max()) / speed, 1.0) * 0.5 / SHARE * braking
+        condition = condition / max(1.0 - ahead_by / condition, 1e-3)
         share = min(max((STOP_AT - condition) / (STOP_AT - SLOW_ABOVE), 0.0), 1.0)
         leading_in = min(max(worsening / WORSENS, 0.0), 1.0)
         return inverse, damped and leading_in > 0.0, 1.0 - leading_in * (1.0 - share)
 
-    def _correction(self, rotation: FloatArray, position: FloatArray, wanted: FloatArray) -> FloatArray:
+    def _smoothed(self, wanted: FloatArray, inverse: FloatArray, dt: float) -> FloatArray:
+        """The ideal twist (6,) a period later, on a straight line to the wanted one that the joints can follow."""
+        change = wanted - self._twist
+        size = float(np.linalg.norm(change))
+        if size < _MOVING:
+            self._rate = (0.0,) * 6
+            return wanted
+        way = change / size
+        joints = np.maximum(np.abs(inverse @ (self._weights * way[: self._rows])), _MOVING)
+        acceleration = min(SHARE * float((self.arm.acceleration / joints).min()), MOST_ACCELERATION)
+        jerk = 0.5 * SHARE * min(float((self.arm.jerk / joints).min()), 15.0 * MOST_ACCELERATION)
+        # Axes that do not change now may still have to end a change.
+        turning = np.abs(self._rate) / max(float(np.linalg.norm(self._rate)), _MOVING)
+        parts = np.maximum(np.maximum(np.abs(way), turning), 0.02)
+        limits = acceleration * parts
+        self._profile.limit(limits.tolist(), (jerk * parts).tolist())
+        rate = np.clip(self._rate, -limits, limits).tolist()
+        twist, self._rate = self._profile.after(self._twist.tolist(), rate, wanted.tolist(), dt)
+        return np.array(twist)
+
+    def _correction(self, rotation: FloatArray, position: FloatArray) -> FloatArray:
         """Twist (6,) that brings the tool back to its reference, across its motion.
 
         The reference moves on with the ideal twist. Along that, it is where the tool is: what joints lag behind when
@@ -182,7 +208,7 @@ class ArmServo:
         if reference is not None:
             off = _across(reference[0] - position, twist[:3], LEASH[0])
             turned = _across(_rotation_vector(reference[1] @ rotation.T), twist[3:], LEASH[1])
-        self._ideal = wanted, position + off, _turned_by(turned) @ rotation
+        self._ideal = position + off, _turned_by(turned) @ rotation
         return GAIN * np.concatenate((off, turned))
 
 

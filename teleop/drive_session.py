@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+import robots.settled_coal  # noqa: F401  (distances the same in every process: see there)
 from robots.kinematics import quaternion_xyzw, rotation_matrix
 from robots.obstacle import Obstacle
 from robots.pose import Pose

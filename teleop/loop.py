@@ -177,6 +177,7 @@ class ControlLoop:
         self._demos = self._deck.demos()
         self._notice(level, told)
         if self._deck.changes != self._stream.number:
+            self._report = DriveReport("stopped", "the scene starts")
             self._show_world()
             self._pace.restart()
 

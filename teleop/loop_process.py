@@ -4,12 +4,12 @@ The loop's libraries load in that process alone.
 """
 
 import gc
-import multiprocessing
 import os
-import signal
+import select
 import socket
-from dataclasses import dataclass
-from multiprocessing.process import BaseProcess
+import subprocess
+import sys
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import orjson
@@ -37,43 +37,67 @@ class LoopSettings:
     folder: Path
 
 
-def start_loop(settings: LoopSettings) -> tuple[BaseProcess, Channel]:
+def start_loop(settings: LoopSettings) -> tuple[subprocess.Popen[bytes], Channel]:
     """Start the control loop in a process of its own; its first message says whether it runs.
 
-    The process ends when the channel is closed.
+    The process ends when the channel is closed, or when we are gone.
     """
     ours, theirs = Channel.pair()
-    context = multiprocessing.get_context("spawn")
-    process = context.Process(target=run_loop, args=(settings, theirs), name="showtell-control", daemon=True)
-    process.start()
+    number = theirs.fileno()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "teleop.loop_process", str(number)],
+        pass_fds=[number],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,  # PyBullet greets there
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)},
+        start_new_session=True,  # Ctrl-C in the terminal is for the server, which ends us in order
+    )
     theirs.close()
+    ours.send_surely(orjson.dumps({**asdict(settings), "folder": str(settings.folder)}))
     return process, ours
 
 
-def run_loop(settings: LoopSettings, sock: socket.socket) -> None:
-    """Run until the server goes away (the process's entry point)."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends us in order
-    channel = Channel(sock)
+def main(number: int) -> None:
+    """Run until the server goes away (the process's entry point).
+
+    Args:
+        number: Descriptor of the socket.
+    """
+    channel = Channel(socket.socket(fileno=number))
+    try:
+        run_loop(channel)
+    except ChannelClosedError:
+        pass  # the usual end
+    finally:
+        channel.close()
+
+
+def run_loop(channel: Channel) -> None:
+    """Set up what the first message says, and run.
+
+    Raises:
+        ChannelClosedError: The server went away.
+    """
+    while not (messages := channel.receive()):
+        select.select([channel], [], [])
+    settings = orjson.loads(messages[0])
     _load_physics()
     from .loop import ControlLoop
     from .loop_deck import Deck
 
     try:
-        deck = Deck(settings.scene, settings.robot, settings.seed, settings.folder)
+        deck = Deck(settings["scene"], settings["robot"], settings["seed"], Path(settings["folder"]))
     except (ShowtellError, OSError) as error:
         channel.send(b"J" + orjson.dumps({"type": "failed", "message": str(error)}))
         return
-    loop = ControlLoop(deck, channel)
-    gc.collect()
-    gc.freeze()  # what is here stays: later collections need not look at it
     try:
+        loop = ControlLoop(deck, channel)
+        gc.collect()
+        gc.freeze()  # what is here stays: later collections need not look at it
         loop.run()
-    except ChannelClosedError:
-        pass
     finally:
-        deck.close()
-        channel.close()
         gc.unfreeze()
+        deck.close()
 
 
 def check_started(message: bytes) -> None:
@@ -87,14 +111,16 @@ def check_started(message: bytes) -> None:
 
 
 def _load_physics() -> None:
-    """Load PyBullet without the line that it prints from C; stdout is left to the server from here on."""
+    """Load PyBullet without the line that it prints from C."""
     kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(nowhere, 1)
         os.dup2(nowhere, 2)
         import twin.world  # noqa: F401
     finally:
         os.dup2(kept, 2)
-        os.dup2(kept, 1)
         os.close(kept)
         os.close(nowhere)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))

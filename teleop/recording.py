@@ -45,6 +45,7 @@ class Recording:
         self._begin = begin
         self._name = name
         self._recorder: Recorder | None = None
+        self._discarded: Recorder | None = None
         self._waiting: list[str] = []
         self._said_before: list[str] = []
         self._marks: list[float] = []
@@ -183,7 +184,7 @@ class Recording:
         if self.path is not None:
             with suppress(FileNotFoundError):
                 os.replace(self.path, self.folder / TRASH)
-        self._recorder, self.state = None, "idle"
+        self._discarded, self._recorder, self.state = self._recorder, None, "idle"
 
     def restore(self) -> Path:
         """Bring back the demo that was discarded last, under a new number.
@@ -194,6 +195,8 @@ class Recording:
         trash, path = self.folder / TRASH, self._free()
         if not trash.exists():
             raise TeleopError(f"nothing was discarded in {self.folder}")
+        if self._discarded is not None:
+            self._discarded.wait()  # its end may still be on its way to the disk
         os.replace(trash, path)
         return path
 

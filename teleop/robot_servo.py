@@ -112,11 +112,10 @@ class RobotServo:
             "base": (DriveReason.NONE, "")
         }
         target = self._limited(wanted, intents, q, reasons) if wanted.any() else wanted
-        before = np.array(self._state[0])
         velocity = self._advance(target, stop is DriveReason.NONE, q, base, dt, reasons)
         if stop is DriveReason.NONE:
-            for name, where in self._slices.items():
-                self._arms[name].proceed(before[where], velocity[where], target[where], dt)
+            for arm in self._arms.values():
+                arm.proceed(dt)
         return self._result(command, stop, why, intents, velocity, turn, reasons)
 
     def _checked(self, view: ServoView, dt: float) -> FloatArray:

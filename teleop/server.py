@@ -9,10 +9,10 @@ import asyncio
 import contextlib
 import logging
 import ssl
+import subprocess
 import time
 from collections.abc import Callable, Collection
 from http import HTTPStatus
-from multiprocessing.process import BaseProcess
 from typing import Any
 
 import orjson
@@ -34,9 +34,11 @@ _LOG = logging.getLogger(__name__)
 MOST_PAGES = 24
 """Pages that may be connected at once."""
 GIVEN_UP_AFTER = 2.0
-"""A page that holds control and says nothing for this long may be relieved of it by another [s]."""
+"""A page that holds control and says nothing for this long loses it [s]."""
 START_TIMEOUT = 60.0
 """How long the control loop may take to start [s]: a robot's meshes are decimated the first time."""
+END_TIMEOUT = 35.0
+"""How long it may take to finish a recording [s]; a disk is waited for 30 s."""
 _BAD_DATA, _POLICY = 1007, 1008
 _POLL = 0.02
 
@@ -75,7 +77,7 @@ class PageServer:
         self._numbers = 0
         self._operator: Client | None = None
         self._heard = 0.0
-        self._process: BaseProcess | None = None
+        self._process: subprocess.Popen[bytes] | None = None
         self._channel: Channel | None = None
         self._latest: dict[str, str | bytes] = {}
         self._ended: asyncio.Future[None] | None = None
@@ -102,9 +104,11 @@ class PageServer:
             await self._serve(started)
         finally:
             self._channel.close()
-            await asyncio.to_thread(self._process.join, 5.0)
-            if self._process.is_alive():
+            try:
+                await asyncio.to_thread(self._process.wait, END_TIMEOUT)
+            except subprocess.TimeoutExpired:
                 self._process.kill()
+                self._process.wait()
 
     async def _serve(self, started: Callable[[str], None]) -> None:
         loop = asyncio.get_running_loop()
@@ -122,8 +126,8 @@ class PageServer:
                 max_size=LONGEST_MESSAGE,
                 max_queue=32,
                 open_timeout=5.0,
-                ping_interval=5.0,
-                ping_timeout=10.0,
+                ping_interval=4.0,
+                ping_timeout=4.0,
                 close_timeout=1.0,
                 server_header=None,
             )
@@ -254,9 +258,7 @@ class PageServer:
         if message.action == "release":
             if self._operator is client:
                 self._let_go("control was given back")
-        elif self._operator is None or (self._operator is not client and now - self._heard > GIVEN_UP_AFTER):
-            if self._operator is not None:
-                self._let_go("the page that held control is silent")
+        elif self._operator is None:
             self._operator, self._heard = client, now
             client.lateness = Lateness()
         elif self._operator is not client:
@@ -293,7 +295,10 @@ class PageServer:
             self._refuse(client, "the control loop is busy: try again")
 
     def _hear(self) -> None:
-        """Pass on what the loop tells."""
+        """Pass on what the loop tells; ten times a second or more, so silence of a page is noticed here, too."""
+        if self._operator is not None and time.monotonic() - self._heard > GIVEN_UP_AFTER:
+            self._let_go("the page that held control is silent")
+            self._tell_control()
         try:
             for message in self._loop_channel().receive():
                 self._pass_on(message)

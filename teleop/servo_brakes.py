@@ -14,6 +14,8 @@ from .velocity_profile import VelocityProfile
 
 State = tuple[tuple[float, ...], tuple[float, ...]]
 """Speeds and accelerations."""
+ROUNDING = 1e-9
+"""Speeds and accelerations below this are rounding errors."""
 BASE_NAMES = ("base speed", "base turning")
 
 
@@ -77,17 +79,27 @@ class ServoBrakes:
 
     def after(self, state: State, target: Sequence[float], dt: float) -> State:
         """The state after a control period on the fastest way to target speeds, each on its own."""
-        return self._profile.after(*state, target, dt)
+        return _settled(*self._profile.after(*state, target, dt))
 
     def together(self, state: State, target: Sequence[float], dt: float) -> State:
-        """As `after`, with the joints of an arm in proportion, so that its tool keeps to its line."""
+        """As `after`, at once where a target is that near, and else with the joints of an arm in proportion.
+
+        A target that moves along is met exactly, as it would not be by changes that each end in steady speed.
+        """
+        now, before = np.array(target), np.array(state[0])
+        rate = (now - before) / dt
+        # Half of the jerk limit, since the last period's mean acceleration lags half a period behind its end.
+        near = np.abs(rate - np.array(state[1])) <= 0.45 * dt * self._jerk
+        ends = np.abs(now + rate * np.abs(rate) / (2.0 * self._jerk)) <= self.velocity
+        if bool((near & ends & (np.abs(rate) <= self._acceleration) & (np.abs(now) <= self.velocity)).all()):
+            return tuple(target), tuple(rate.tolist())
         velocity: list[float] = []
         acceleration: list[float] = []
         for where, profile in self._groups:
             speeds, rates = profile.after(state[0][where], state[1][where], target[where], dt)
             velocity += speeds
             acceleration += rates
-        return tuple(velocity), tuple(acceleration)
+        return _settled(velocity, acceleration)
 
     def overrun(self, state: State, target: Sequence[float], q: Sequence[float], dt: float) -> list[int]:
         """Joints that would pass a position limit if they went on to a state and braked from there.
@@ -129,3 +141,10 @@ class ServoBrakes:
     def finite(values: Sequence[float]) -> bool:
         """Whether all values are numbers."""
         return all(map(math.isfinite, values))
+
+
+def _settled(velocity: Sequence[float], acceleration: Sequence[float]) -> State:
+    """A state in which what rests but for rounding errors is at rest."""
+    if max(map(abs, velocity)) < ROUNDING and max(map(abs, acceleration)) < ROUNDING:
+        return (0.0,) * len(velocity), (0.0,) * len(velocity)
+    return tuple(velocity), tuple(acceleration)

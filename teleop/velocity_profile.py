@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from ruckig import ControlInterface, InputParameter, Ruckig, Synchronization, Trajectory
+from ruckig import ControlInterface, InputParameter, Ruckig, RuckigError, Synchronization, Trajectory
 
 _ANY_PERIOD = 1.0 / 240.0
 """Ruckig wants a control period at construction; profiles are computed offline and read at any time."""
@@ -23,12 +23,19 @@ class VelocityProfile:
         self._otg = Ruckig(n, _ANY_PERIOD)
         self._input = InputParameter(n)
         self._input.control_interface = ControlInterface.Velocity
+        self._together = together
         self._input.synchronization = Synchronization.Phase if together else Synchronization.No
         self._input.max_acceleration = list(max_acceleration)
         self._input.max_jerk = list(max_jerk)
         self._input.current_position = [0.0] * n
         self._rest = [0.0] * n
         self._trajectory = Trajectory(n)
+        self._max_acceleration = tuple(max_acceleration)
+
+    def limit(self, max_acceleration: Sequence[float], max_jerk: Sequence[float]) -> None:
+        """Set other limits, n each [rad/s², rad/s³]."""
+        self._input.max_acceleration = list(max_acceleration)
+        self._input.max_jerk = list(max_jerk)
         self._max_acceleration = tuple(max_acceleration)
 
     def after(
@@ -67,4 +74,14 @@ class VelocityProfile:
         self._input.current_velocity = list(velocity)
         self._input.current_acceleration = list(acceleration)
         self._input.target_velocity = list(target)
-        self._otg.calculate(self._input, self._trajectory)
+        if not self._together:
+            self._otg.calculate(self._input, self._trajectory)
+            return
+        try:
+            self._otg.calculate(self._input, self._trajectory)
+        except RuckigError:  # it finds no way that takes all equally long; each on its own there always is one
+            self._input.synchronization = Synchronization.No
+            try:
+                self._otg.calculate(self._input, self._trajectory)
+            finally:
+                self._input.synchronization = Synchronization.Phase

@@ -1,10 +1,12 @@
 """Check the system libraries that the Python packages load, and install what is missing where that is allowed.
 
-Open3D's wheel brings neither libusb nor the graphics libraries and does not import without them. This runs before
-anything is installed, so it uses the standard library alone.
+Open3D's wheel brings neither libusb nor the graphics libraries and does not import without them; Mesa's software driver
+draws what the cameras see (without it a slower renderer does). With `--tests` a browser is wanted too, in which the
+page is tested. This runs before anything is installed, so it uses the standard library alone.
 """
 
 import ctypes
+import glob
 import os
 import shutil
 import subprocess
@@ -14,14 +16,23 @@ PACKAGE_OF_LIBRARY = {
     "libusb-1.0.so.0": "libusb-1.0-0",
     "libGL.so.1": "libgl1",
     "libEGL.so.1": "libegl1",
+    "libEGL_mesa.so.0": "libegl-mesa0",
     "libX11.so.6": "libx11-6",
 }
 """Library to the Debian package that holds it."""
+DRIVERS = ("/usr/lib/*/dri/swrast_dri.so", "/usr/lib64/dri/swrast_dri.so", "/usr/lib/*/libgallium*.so")
+DRIVER_PACKAGE = "libgl1-mesa-dri"
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+BROWSER_PACKAGE = "chromium"
 
 
 def missing_packages() -> list[str]:
-    """Packages whose library cannot be loaded."""
+    """Packages whose library cannot be loaded, whose driver is not there, or whose program is not."""
     missing = []
+    if not any(map(glob.glob, DRIVERS)):
+        missing.append(DRIVER_PACKAGE)
+    if "--tests" in sys.argv[1:] and not any(map(shutil.which, BROWSERS)):
+        missing.append(BROWSER_PACKAGE)
     for library, package in PACKAGE_OF_LIBRARY.items():
         try:
             ctypes.CDLL(library)

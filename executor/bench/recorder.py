@@ -9,7 +9,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import warnings
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -23,13 +22,14 @@ from executor.collection import in_processes
 from teleop import (
     Demo,
     DemoError,
-    IncompleteDemoWarning,
     Recorder,
     ScriptedOperator,
     check_replay,
     load_demo,
     random_task,
 )
+from teleop.demo_file import read_records
+from teleop.demo_reader import demo_of
 from teleop.record import record_demo
 from twin import World, random_board
 
@@ -129,7 +129,7 @@ def full_disk(robot: str, seed: int, folder: Path) -> tuple[dict[str, float | No
         return {"full_disk.kept_seconds": None}, "the disk could not be filled"
     demo = _quietly(copy)
     steps = int(done["failed_at"])
-    figures = {
+    figures: dict[str, float | None] = {
         "full_disk.lost_seconds": (steps - len(demo.inputs)) / demo.rate,
         "full_disk.kept_seconds": len(demo.inputs) / demo.rate,
         "full_disk.control_steps_after": float(done["steps"]) - steps,
@@ -153,11 +153,12 @@ def replayed(
     work = [(robots[number % len(robots)], seed + number) for number in range(demos)]
     record = partial(_record_one, folder)
     list(in_processes(record, work, jobs, lambda: None))
-    # Backwards, so that another process than the one that recorded a demo replays it.
-    errors = dict(in_processes(partial(_replay_one, folder), work[::-1], jobs, on_done))
+    # Backwards and in new processes: what a process did before must not matter.
+    again = work[::-1]
+    errors = dict(in_processes(partial(_replay_one, folder), again, jobs, on_done))
     figures: dict[str, float | None] = {}
     for robot in robots:
-        mine = [error for index, error in errors.items() if work[::-1][index][0] == robot]
+        mine = [error for index, error in errors.items() if again[index][0] == robot]
         if mine:
             figures[f"replay.{robot}.demos"] = float(len(mine))
             figures[f"replay.{robot}.max_error"] = max(error for error, _ in mine)
@@ -262,6 +263,5 @@ def _replay_one(folder: Path, job: tuple[str, int]) -> tuple[float, float]:
 
 
 def _quietly(path: Path) -> Demo:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", IncompleteDemoWarning)
-        return load_demo(path)
+    """Read a demo, whole or not, without a warning."""
+    return demo_of(path, read_records(path))

@@ -126,6 +126,49 @@ def moves(
         raise typer.Exit(FAILED)
 
 
+@app.command()
+def servo(
+    steps: Annotated[int, typer.Option(min=1, help="Control steps a robot.")] = 1_000_000,
+    robot: Annotated[list[str] | None, typer.Option(help="Robot; may be given again. All without it.")] = None,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")] = 0,
+    seed: Seed = 0,
+    as_json: Json = False,
+) -> None:
+    """Random, adversarial and human-like input: is any limit or distance broken, does the arm ever stick? 1 if so.
+
+    Example: showtell bench servo --robot three_dof --steps 20000
+    """
+    from executor.bench import servo as part
+
+    out = Output(as_json)
+    robots = robot or list(ROBOTS)
+    with out.progress("driving", part.chunks(steps) * len(robots)) as advance:
+        report = part.run(seed, steps, robots, jobs, advance)
+    _tell(out, "Servo", report, seed)
+    if any(report.figures[f"{each}.violations"] or report.figures[f"{each}.stuck"] for each in robots):
+        raise typer.Exit(FAILED)
+
+
+@app.command()
+def recorder(
+    kills: Annotated[int, typer.Option(min=1, help="Recordings that are killed at random moments.")] = 50,
+    demos: Annotated[int, typer.Option(min=1, help="Scripted demos that are replayed.")] = 100,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")] = 0,
+    seed: Seed = 0,
+    as_json: Json = False,
+) -> None:
+    """Kill recordings, fill the disk, replay demos, and measure what recording costs the control loop.
+
+    Example: showtell bench recorder --kills 5 --demos 6
+    """
+    from executor.bench import recorder as part
+
+    out = Output(as_json)
+    with out.progress("recording", kills + demos) as advance:
+        report = part.run(seed, kills, demos, jobs=jobs, on_done=advance)
+    _tell(out, "Recorder", report, seed)
+
+
 def _tell(out: Output, title: str, report: "BenchReport", seed: int) -> None:
     """Print figures beside baselines."""
     rows = [(name, _figure(value)) for name, value in report.figures.items()]

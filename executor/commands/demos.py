@@ -69,7 +69,7 @@ def demos(
         for warning in row.get("warnings", []):
             out.say(f"{row['demo']}: {warning}")
     if broken:
-        out.say(f"{len(broken)} of {len(rows)} are broken")
+        out.say(f"{len(broken)} of {len(rows)} are broken; --repair makes those whole that end early")
     out.result({"demos": rows, "broken": len(broken), "repaired": repaired})
     if broken:
         raise typer.Exit(FAILED)
@@ -86,7 +86,7 @@ def _row(path: Path, check: bool) -> dict[str, Any]:
         demo = read_demo(path)
         row |= _facts(demo)
         if not demo.complete:
-            row["problem"] = "ends early; --repair makes it whole up to there"
+            row["problem"] = "ends early"
         if check:
             report = check_replay(demo)
             row |= {"replayable": report.success, "max_error": report.max_error, "warnings": list(report.warnings)}

@@ -216,7 +216,7 @@ function showSetup(setup) {
 
 function shownControls(text) {
   return text.split("|").map((part) => part.trim().replace(/^-/, "").split(/\s*[+-]\s*/).map(
-    (each) => CONTROLS_SHOWN[each.trim()] ?? each.trim()).join(" + ")).join(" or ");
+    (each) => CONTROLS_SHOWN[each.trim()] ?? each.trim()).join(part.includes("-") ? ", " : " + ")).join(" or ");
 }
 
 /** Keys that play any of the controls of an action; a chord needs a key that plays the whole of it. */
@@ -333,6 +333,7 @@ const letGo = () => {
   operator.release();
 };
 addEventListener("blur", letGo);
+addEventListener("pagehide", () => state.socket?.close()); // a page kept in the browser's cache would keep control
 document.addEventListener("visibilitychange", () => document.hidden && letGo());
 document.addEventListener("focusin", (event) => !drives(event.target) && letGo());
 // A click with the mouse does not keep the focus on a button: the keys go on driving.

@@ -63,7 +63,7 @@ const TELL_EVERY = 5;
 const SLOW_MS = 150;
 /** Direction from which each view looks (x away from the robot, y left, z up) and its distance in radii. */
 const VIEWS = {
-  overview: {from: [-0.55, -0.62, 0.8], far: 2.7},
+  overview: {from: [-0.55, -0.62, 0.8], far: 2.9},
   behind: {from: [-0.75, 0.0, 1.0], far: 2.9},
   front: {from: [1.0, 0.0, 0.42], far: 2.9},
   side: {from: [0.0, -1.0, 0.30], far: 2.9},

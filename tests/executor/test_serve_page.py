@@ -1,7 +1,12 @@
 """A real headless Chromium drives each robot through the page."""
 
 import asyncio
+import json
+import re
 import shutil
+import signal
+import subprocess
+import sys
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -9,11 +14,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import typer
 from PIL import Image
+from typer.testing import CliRunner
 
 from executor.bench.page import STUB
 from executor.browser import Browser, Tab
-from teleop import check_replay, load_demo
+from teleop import TeleopError, check_replay, load_demo
 from teleop.loop_process import LoopSettings
 from teleop.server import PageServer
 
@@ -175,50 +182,115 @@ def test_a_page_that_freezes_or_is_closed_stops_the_robot(tmp_path: Path) -> Non
     asyncio.run(test())
 
 
-@pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 844)])
-def test_the_page_is_whole_at_desktop_and_phone_size(width: int, height: int, tmp_path: Path) -> None:
+async def seen(page: Visit, path: Path) -> int:
+    """How many colours the middle of the picture has; waits for the first picture."""
+    for _ in range(40):
+        await page.tab.screenshot(path)
+        with Image.open(path) as image:
+            width, height = image.size
+            middle = np.asarray(image.convert("RGB").crop((width // 8, height // 5, width // 2, height // 2)))
+        if (colours := len(np.unique(middle.reshape(-1, 3), axis=0))) > 200:
+            return colours
+        await asyncio.sleep(0.1)
+    return colours
+
+
+def box_of(element: str) -> str:
+    return f"(b => [b.left, b.top, b.right, b.bottom])(document.getElementById('{element}').getBoundingClientRect())"
+
+
+async def check_layout(page: Visit, width: int, height: int, path: Path) -> None:
+    tab = page.tab
+    assert await seen(page, path) > 200  # a shaded scene, not an empty canvas
+    assert await tab.value("[innerWidth, innerHeight]") == [width, height]
+    assert await tab.value("document.documentElement.scrollWidth <= innerWidth")
+    await tab.value("scrollTo(0, 1e6)")
+    box = await tab.value(box_of("stop"))
+    assert 0 <= box[0] < box[2] <= width  # always in sight
+    assert 0 <= box[1] < box[3] <= height
+    await tab.value("scrollTo(0, 0)")
+    roles = {"button", "slider", "textbox", "checkbox", "combobox", "radio", "radiogroup", "link"}
+    tree = await tab.send("Accessibility.getFullAXTree")
+    unnamed = [
+        node
+        for node in tree["nodes"]
+        if node.get("role", {}).get("value") in roles and not node.get("name", {}).get("value")
+    ]
+    assert unnamed == []
+
+
+def test_the_page_is_whole_at_desktop_and_phone_size(tmp_path: Path) -> None:
     async def test() -> None:
-        async with visit("tabletop", tmp_path, width=width, height=height) as page:
+        async with visit("ordering", tmp_path) as page:
             tab = page.tab
             await page.ready()
-            picture = tmp_path / "page.png"
-            await tab.screenshot(picture)
-            with Image.open(picture) as image:
-                assert image.size == (width, height)
-                middle = np.asarray(image.convert("RGB").crop((width // 8, height // 5, width // 2, height // 2)))
-            assert len(np.unique(middle.reshape(-1, 3), axis=0)) > 200  # a shaded scene, not an empty canvas
-            assert await tab.value("document.documentElement.scrollWidth <= innerWidth")
+            await check_layout(page, 1280, 800, tmp_path / "desktop.png")
             await tab.value("document.querySelector('#help summary').click()")
             assert await tab.value("document.getElementById('legend').rows.length") > 12
-            await tab.value("scrollTo(0, 1e6)")
-            box = await tab.value(
-                "(({top, bottom}) => [top, bottom])(document.getElementById('stop').getBoundingClientRect())"
-            )
-            assert 0 <= box[0] < box[1] <= height  # always in sight
-            tree = await tab.send("Accessibility.getFullAXTree")
-            roles = {"button", "slider", "textbox", "checkbox", "combobox", "radio", "radiogroup", "link"}
-            unnamed = [
-                node
-                for node in tree["nodes"]
-                if node.get("role", {}).get("value") in roles and not node.get("name", {}).get("value")
-            ]
-            assert unnamed == []
+            await tab.value("document.querySelector('#help summary').click()")
             await tab.value("[...document.querySelectorAll('#views button')].at(-1).click()")
             await tab.until("[...document.querySelectorAll('#views button')].at(-1).ariaChecked === 'true'")
-            await tab.value("document.querySelector('#arms [data-arm=right]').click()")
-            await page.until(lambda: page.status["chosen"] == "right")
+            for choice in ("wheels", "arm"):
+                await tab.value(f"document.querySelector('#arms [data-arm={choice}]').click()")
+                await page.until(lambda choice=choice: page.status["chosen"] == choice)
             assert await tab.value("location.hash + location.search") == ""  # the token is out of sight
+            await tab.resize(390, 844, phone=True)
+            await tab.open(page.server.url.split("#")[0] + "?again")  # this tab knows the token still
+            await tab.until("location.search && document.body?.dataset.control === 'yours'")
+            await page.ready()
+            await check_layout(page, 390, 844, tmp_path / "phone.png")
+            left, top, right, bottom = await tab.value(box_of("stick-left"))
+            x, y = (left + right) / 2, (top + bottom) / 2
+            await tab.send("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+            await tab.send("Input.dispatchTouchEvent", type="touchMove", touchPoints=[{"x": x, "y": y + 40}])
+            await page.moves(0, -1)
+            await tab.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+            await page.rests()
             assert tab.complaints == []
+            await tab.value("sessionStorage.clear()")
+            await tab.open(page.server.url.split("#")[0])
+            await tab.until("document.getElementById('safety-reason')?.textContent.includes('carries the token')")
 
     asyncio.run(test())
 
 
-def test_a_wrong_token_shows_what_to_do(tmp_path: Path) -> None:
-    async def test() -> None:
-        async with visit("board", tmp_path) as page:
-            await page.tab.value("sessionStorage.clear()")
-            address = page.server.url.split("#")[0]
-            await page.tab.open(address)
-            await page.tab.until("document.getElementById('safety-reason')?.textContent.includes('carries the token')")
+COMMAND = """
+import typer
+from executor.commands import serve
+app = typer.Typer()
+serve.add_to(app)
+app()
+"""
 
-    asyncio.run(test())
+
+def test_the_command_prints_an_address_and_ends_in_order(tmp_path: Path) -> None:
+    arguments = ["--json", "--port", "0", "-o", str(tmp_path / "demos")]
+    with subprocess.Popen(
+        [sys.executable, "-c", COMMAND, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        told = json.loads(process.stdout.readline())
+        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/#token=[\w-]{43}", told["url"])
+        assert (tmp_path / "demos").is_dir()
+        process.send_signal(signal.SIGTERM)
+        out, err = process.communicate(timeout=20)
+    assert process.returncode == 0
+    assert out == ""
+    assert err.splitlines()[-1] == "ended"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--host", "0.0.0.0"], "--host 0.0.0.0 can be reached from other machines"),
+        (["--host", "0.0.0.0", "--expose"], "--expose needs TLS"),
+        (["--cert", "cert.pem"], "TLS needs both --cert and --key"),
+    ],
+)
+def test_wrong_arguments_are_refused_before_anything_starts(arguments: list[str], told: str) -> None:
+    from executor.commands.serve import serve
+
+    app = typer.Typer()
+    app.command()(serve)
+    with pytest.raises(TeleopError, match=re.escape(told)):
+        CliRunner().invoke(app, arguments, catch_exceptions=False)

@@ -46,7 +46,7 @@ def test_a_toml_file_is_read(tmp_path: Path) -> None:
         ),
         ("id = 7", "id = 1", "objects: id 1 is used more than once"),
         ("id = 7", "", "objects[1].id: missing"),
-        ('name = "two"', 'nome = "two"', "nome: unknown key; allowed keys here are name, kind, robot, finger_mounting,"),
+        ('name = "two"', 'nome = "two"', "nome: unknown key; allowed keys here are name, kind, robot,"),
         ('name = "two"', "held = 3", "held: 3 is not the id of an object; the scene's ids: 1, 7"),
         ("[[objects]]", "[[objects", "not valid TOML"),
     ],
