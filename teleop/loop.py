@@ -153,25 +153,20 @@ class ControlLoop:
             "reset": lambda: deck.renew(another=False),
             "another": lambda: deck.renew(another=True),
         }
+        self._try(actions[message["action"]])
+
+    def _try(self, action: Callable[[], str]) -> None:
+        """Do something with the deck and tell how it went."""
         try:
-            level, told = "info", actions[message["action"]]()
+            level, told = "info", action()
         except (ShowtellError, OSError) as error:
             level, told = "error", str(error)
-        self._deck_changed(level, told)
+        if told:
+            self._deck_changed(level, told)
 
     def _button(self, event: str) -> None:
         """A button of the gamepad that is meant for the deck: what it does depends on what is on."""
-        mode = self._deck.mode
-        ends = mode in ("recording", "replaying")
-        action = {
-            "record": "stop" if ends else "keep" if mode == "review" else "record",
-            "discard": "discard" if mode in ("recording", "review") else "",
-            "redo": "redo" if mode in ("recording", "review") else "",
-            "success": "success" if mode == "review" else "",
-            "failure": "failure" if mode == "review" else "",
-        }.get(event, "")
-        if action:
-            self._do({"action": action})
+        self._try(lambda: self._deck.press(event))
 
     def _deck_changed(self, level: str, told: str) -> None:
         self._demos = self._deck.demos()

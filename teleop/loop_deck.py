@@ -38,7 +38,17 @@ class Deck:
         changes: Counts the worlds: another number means that geometry has to be looked at anew.
     """
 
-    def __init__(self, scene: str, robot: str | None, seed: int, folder: Path) -> None:
+    def __init__(
+        self,
+        scene: str,
+        robot: str | None,
+        seed: int,
+        folder: Path,
+        *,
+        name: str = "page",
+        mapping: Path | None = None,
+        window: bool = False,
+    ) -> None:
         """Set the scene up.
 
         Args:
@@ -46,6 +56,9 @@ class Deck:
             robot: Robot instead of the scene's own; None keeps that.
             seed: Decides a random scene.
             folder: Where demos are written, and found for replay.
+            name: What the demos' files are called, before their numbers.
+            mapping: File of sticks and buttons; None takes the usual one.
+            window: Show the world in PyBullet's own window.
 
         Raises:
             SceneError: The scene is unknown or wrong.
@@ -53,11 +66,12 @@ class Deck:
         """
         self.changes = 0
         self._scene, self._robot, self._seed, self._folder = scene, robot, seed, folder
-        self._recording = Recording(folder, self._begin, "page")
+        self._mapping, self._window = mapping, window
+        self._recording = Recording(folder, self._begin, name)
         self._said = self._said_before = 0
         self._outcome = ""
         self._player: DemoPlayer | None = None
-        self.driver = RobotDriver(World(self._spec()))
+        self.driver = RobotDriver(World(self._spec(), window=window), mapping=mapping)
 
     @property
     def mode(self) -> DeckMode:
@@ -161,11 +175,36 @@ class Deck:
         self._renew()
         return f"scene {self._scene} {self._seed}"
 
+    def press(self, event: str) -> str:
+        """What a button of the gamepad or a key does to the recording; its meaning depends on what is on.
+
+        Returns:
+            Something to tell people; empty where the button means nothing now.
+
+        Raises:
+            TeleopError: It cannot be done.
+        """
+        mode = self.mode
+        ends, recorded = mode in ("recording", "replaying"), mode in ("recording", "review")
+        if event == "record":
+            return self.stop() if ends else self.keep() if mode == "review" else self.record()
+        if event == "discard" and recorded:
+            return self.discard()
+        if event == "redo" and recorded:
+            return self.redo()
+        if mode == "review" and event in ("success", "failure"):
+            return self.label("success" if event == "success" else "failure")
+        return ""
+
     def demos(self) -> list[str]:
         """Names of the demos that can be replayed, newest first."""
         busy = None if self.mode == "idle" else self._recording.path
         paths = [path for path in self._folder.glob("*.mcap") if path != busy]
         return [path.name for path in sorted(paths, key=lambda each: each.stat().st_mtime, reverse=True)[:MOST_LISTED]]
+
+    def kept(self) -> list[Path]:
+        """The demos of the folder, oldest first."""
+        return [self._folder / name for name in reversed(self.demos())]
 
     def progress(self) -> dict[str, object]:
         """What is on, for the page."""
@@ -203,9 +242,11 @@ class Deck:
         return Recorder(path, world.spec, feel, rate, robot=world.robot, details=details, exclusive=True)
 
     def _renew(self) -> None:
-        new = RobotDriver(World(self._spec()), self.driver)
-        self.driver.close()
-        self.driver = new
+        old = self.driver
+        if self._window:  # there can be but one
+            old.close()
+        self.driver = RobotDriver(World(self._spec(), window=self._window), old, self._mapping)
+        old.close()
         self.changes += 1
 
     def _play(self, player: DemoPlayer) -> tuple[DriveReport, str]:

@@ -1,6 +1,7 @@
 """What the control loop drives: the page's sticks, through the mapping and the servo, to a world and onto disk."""
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -104,15 +105,19 @@ class RobotDriver:
         mapping: What sticks and buttons mean, and what the person chose.
     """
 
-    def __init__(self, world: World, before: "RobotDriver | None" = None) -> None:
+    def __init__(self, world: World, before: "RobotDriver | None" = None, mapping: Path | None = None) -> None:
         """Take a world over.
 
         Args:
             world: The world; nothing in it has moved yet.
             before: Whose choices are kept, as far as the robot is the same.
+            mapping: File of sticks and buttons; None takes the usual one.
+
+        Raises:
+            TeleopError: The file is wrong; names key and value.
         """
         self.world = world
-        self.mapping = DriveMapping.load(None, world.robot)
+        self.mapping = DriveMapping.load(mapping, world.robot)
         self._session = DriveSession(world)
         self._steps = 0
         if before is not None and before.world.robot.name == world.robot.name:

@@ -4,6 +4,8 @@ PyBullet's default client is global to the process; nothing here ever uses it, s
 """
 
 import math
+import os
+import sys
 import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -57,13 +59,22 @@ class ContactForce:
 class Physics:
     """One physics client. Body and link numbers are PyBullet's; link -1 is the base."""
 
-    def __init__(self, time_step: float, solver_iterations: int) -> None:
+    def __init__(self, time_step: float, solver_iterations: int, *, window: bool = False) -> None:
         """Connect a client.
 
+        Args:
+            time_step: Length of a step [s].
+            solver_iterations: Of the contact solver, each step.
+            window: Show what happens in PyBullet's own window; one process can have one.
+
         Raises:
-            TwinError: PyBullet has no client left (about a thousand may be open at once).
+            TwinError: There is no display, or PyBullet has no client left (about a thousand may be open at once).
         """
-        self._client = pybullet.connect(pybullet.DIRECT)
+        if window and sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+            raise TwinError("a window needs a display, and DISPLAY is not set: leave the window out, or use the page")
+        self._client = pybullet.connect(pybullet.GUI if window else pybullet.DIRECT)
+        if self._client < 0 and window:
+            raise TwinError("PyBullet could not open its window: one is open already, or the display cannot be used")
         if self._client < 0:
             raise TwinError("PyBullet gives no further client: close worlds that are no longer used")
         self._closer = weakref.finalize(self, _disconnect, self._client)

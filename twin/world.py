@@ -84,8 +84,12 @@ class World:
 
     DT: ClassVar[float] = 1.0 / 240.0
 
-    def __init__(self, spec: SceneSpec) -> None:
+    def __init__(self, spec: SceneSpec, *, window: bool = False) -> None:
         """Build the scene and let it settle.
+
+        Args:
+            spec: The scene.
+            window: Show it in PyBullet's own window, for those with a display.
 
         Raises:
             RobotError: The robot is unknown or its files are wrong.
@@ -98,7 +102,7 @@ class World:
         posture, tool = _start(spec, self.robot)
         self._number = next(_numbers)
         self._state: WorldState | None = None
-        self._physics = Physics(self.DT, SOLVER_ITERATIONS)
+        self._physics = Physics(self.DT, SOLVER_ITERATIONS, window=window)
         try:
             self._build(posture, tool)
         except BaseException:

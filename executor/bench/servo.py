@@ -105,7 +105,8 @@ def run(
             notes += [f"{robot}: {kind}: {line} (x{count})" for line, count in found.most_common(5)]
     settings = {
         "showtell": f"kinematic, {1 / DT:.0f} Hz, one core a task; a third each of random, adversarial and human-like "
-        f"input; times are those of the core; limits looked at each step, all distances every {LOOK_EVERY} steps; at least {1000 * LEAST:g} mm to "
+        f"input; times are those of the core; limits "
+        f"looked at each step, all distances every {LOOK_EVERY} steps; at least {1000 * LEAST:g} mm to "
         "everything but what fingers touch"
     }
     return BenchReport(figures, settings=settings, notes=tuple(notes))

@@ -15,6 +15,8 @@ class Device(StrEnum):
     """What the operator holds."""
 
     SCRIPTED = "scripted"
+    GAMEPAD = "gamepad"
+    KEYBOARD = "keyboard"
 
 
 class Collection(StrEnum):
@@ -25,20 +27,32 @@ class Collection(StrEnum):
 
 def record(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the demos.")],
-    device: Annotated[Device, typer.Option(help="Who drives: a scripted operator moves sticks and buttons.")] = (
-        Device.SCRIPTED
-    ),
+    device: Annotated[
+        Device, typer.Option(help="Who drives: a scripted operator, or you with a gamepad or this terminal's keys.")
+    ] = Device.SCRIPTED,
     count: Annotated[int, typer.Option("--count", "-n", min=1, help="How many demos.")] = 1,
     collection: Annotated[Collection, typer.Option(help="Which scenes and tasks.")] = Collection.BOARD,
     sentences: Annotated[int, typer.Option(min=1, help="At most so many sentences with each demo.")] = 3,
-    robot: Annotated[str | None, typer.Option(help="Robot to use instead of the collection's own.")] = None,
+    robot: Annotated[str | None, typer.Option(help="Robot to use instead of the scene's own.")] = None,
+    scene: Annotated[
+        str, typer.Option(help="Your scene: board, board-all, tabletop, ordering, or a TOML file.")
+    ] = "board",
+    say: Annotated[list[str] | None, typer.Option(help="Sentence for your next demo; may be given again.")] = None,
+    pad: Annotated[str | None, typer.Option(help="Which gamepad: its number, or part of its name.")] = None,
+    mapping: Annotated[Path | None, typer.Option(help="File of sticks, buttons and keys.")] = None,
+    window: Annotated[bool, typer.Option("--window", help="Show your scene in a window, where there is a display.")] = (
+        False
+    ),
+    seconds: Annotated[float | None, typer.Option(min=0.1, help="End your session after so long; else Ctrl-C.")] = None,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")] = 0,
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
-    """Record demos: a gamepad drives the arm through the servo, and a sentence is said with each.
+    """Record demos: a scripted operator with a gamepad and a sentence for each, or you at your own pace.
 
     Example: showtell record --device scripted --count 20 --collection board -o demos/ --seed 1
+
+    Example: showtell record --device keyboard --scene tabletop --say "move the apple" --window -o demos/
     """
     from executor.collection import BoardCollection, record_collection
     from executor.files import new_folder
@@ -48,6 +62,16 @@ def record(
     if robot is not None:
         load_robot(robot)  # complains before long work
     folder = new_folder(output)
+    if device is not Device.SCRIPTED:
+        from executor.hand_recording import HandSettings, record_by_hand
+
+        settings = HandSettings(
+            device.value, scene, robot, seed, folder, tuple(say or ()), pad, mapping, window, seconds
+        )
+        demos = record_by_hand(settings, out)
+        out.say(f"{len(demos)} demos in {folder}: {', '.join(path.name for path in demos) or 'none was kept'}")
+        out.result({"device": device.value, "scene": scene, "demos": [str(path) for path in demos], "seed": seed})
+        return
     begun = perf_counter()
     with out.progress("recording", count) as advance:
         board = BoardCollection(folder, seed, robot, sentences=sentences)
