@@ -280,16 +280,21 @@ class RobotServo:
     ) -> State:
         """The state after the period, joints that would overrun their position limits braking."""
         assert self._state is not None
-        change = self._brakes.together if together else self._brakes.after
-        state = change(self._state, goal, dt)
-        over = self._brakes.overrun(state, goal, q.tolist(), dt)
-        if over:
+        here = q.tolist()
+        if together:
+            state = self._brakes.together(self._state, goal, dt)
+            if not self._brakes.overrun(state, None, here, dt):
+                return state
+        # Each on its own from here: a joint that waits for the others brakes too late.
+        while True:
+            state = self._brakes.after(self._state, goal, dt)
+            over = [i for i in self._brakes.overrun(state, goal, here, dt) if goal[i]]
+            if not over:
+                return state
             for i in over:
                 goal[i] = 0.0
                 name = next(name for name, where in self._slices.items() if where.start <= i < where.stop)
                 _note(reasons, name, DriveReason.POSITION_LIMIT, self._brakes.names[i])
-            state = self._brakes.after(self._state, goal, dt)
-        return state
 
     def _offending(self, state: State, q: FloatArray, base: Pose, dt: float) -> IntArray:
         """Pairs that keep a state from being taken."""

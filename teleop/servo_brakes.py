@@ -101,12 +101,13 @@ class ServoBrakes:
             acceleration += rates
         return _settled(velocity, acceleration)
 
-    def overrun(self, state: State, target: Sequence[float], q: Sequence[float], dt: float) -> list[int]:
+    def overrun(self, state: State, target: Sequence[float] | None, q: Sequence[float], dt: float) -> list[int]:
         """Joints that would pass a position limit if they went on to a state and braked from there.
 
         Args:
             state: The state after the control period.
-            target: What they are on the way to: joints that lead away from a limit are never held.
+            target: What they are on the way to as fast as they can: those that turn back do better than to brake. None
+                takes all.
             q: Where they are now.
             dt: Control period [s].
         """
@@ -116,8 +117,9 @@ class ServoBrakes:
         for i, (back, ahead) in enumerate(self._profile.travel_to_rest(*state)[: len(q)]):
             step = state[0][i] * dt
             at = q[i] + step
-            over = at + ahead > self._upper[i] and ahead + max(step, 0.0) > 0.0 and target[i] > 0.0
-            under = at + back < self._lower[i] and back + min(step, 0.0) < 0.0 and target[i] < 0.0
+            up, down = (True, True) if target is None else (target[i] > 0.0, target[i] < 0.0)
+            over = up and at + ahead > self._upper[i] and ahead + max(step, 0.0) > 0.0
+            under = down and at + back < self._lower[i] and back + min(step, 0.0) < 0.0
             if over or under:
                 found.append(i)
         return found
