@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from robots import CollisionModel, RobotError, RobotModel, load_robot
+from robots.manipulability import condition_number
 
 from .bullet_robot import BulletRobot
 
@@ -40,14 +41,23 @@ def test_limits_are_the_published_ones(baxter: RobotModel) -> None:
         for have, published in zip((arm.lower, arm.upper, arm.velocity), wanted, strict=True):
             # The table is rounded to four digits.
             np.testing.assert_allclose(have, published, atol=1e-4)
-        np.testing.assert_array_equal(arm.home, [0, -0.55, 0, 0.75, 0, 1.26, 0])
 
 
-def test_home_touches_nothing(baxter: RobotModel) -> None:
+def test_home_is_far_from_singular_postures_and_mirrored(baxter: RobotModel) -> None:
+    left, right = (baxter.arms[side].home for side in ("left", "right"))
+    np.testing.assert_array_equal(left * [-1, 1, -1, 1, -1, 1, -1], right)
+    for arm in baxter.arms.values():
+        # MoveIt Servo slows down from 17; 0.3 m of movement weigh as much as a radian.
+        assert condition_number(arm.jacobian(arm.home), 0.3) < 8
+
+
+@pytest.mark.parametrize("posture", ["home", "neutral"])
+def test_home_and_the_makers_neutral_posture_touch_nothing(baxter: RobotModel, posture: str) -> None:
     model = CollisionModel(baxter)
+    q = baxter.home if posture == "home" else np.tile([0, -0.55, 0, 0.75, 0, 1.26, 0], 2)
     for opening in (0.0, 0.04):
         openings = {"left": opening, "right": opening}
-        assert model.free(baxter.home, openings)
+        assert model.free(q, openings)
         assert model.nearest(baxter.home, openings).distance > 0.05
 
 
