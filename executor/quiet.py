@@ -1,7 +1,9 @@
-"""Loading PyBullet without the line that it prints from C: stderr is for progress and one-line errors."""
+"""Keeping what libraries print from C out of the way: stdout is for results, stderr for progress and errors."""
 
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 
 def load_physics() -> None:
@@ -17,4 +19,18 @@ def load_physics() -> None:
     finally:
         os.dup2(kept, 2)
         os.close(nowhere)
+        os.close(kept)
+
+
+@contextmanager
+def words_to_stderr() -> Iterator[None]:
+    """Send what anything in this process prints on stdout, from C too, to stderr meanwhile."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    try:
+        os.dup2(2, 1)
+        yield
+    finally:
+        sys.stdout.flush()
+        os.dup2(kept, 1)
         os.close(kept)

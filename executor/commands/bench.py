@@ -98,9 +98,12 @@ def camera(
     Example: showtell bench camera --frames 10
     """
     from executor.bench import camera as part
+    from executor.quiet import words_to_stderr
 
     out = Output(as_json)
-    _tell(out, "Camera", part.run(seed, frames), seed)
+    with words_to_stderr():  # PyBullet's plug-in prints what it finds
+        report = part.run(seed, frames)
+    _tell(out, "Camera", report, seed)
 
 
 @app.command()
