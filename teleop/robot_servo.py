@@ -103,14 +103,15 @@ class RobotServo:
                 name: view.openings.get(name, arm.gripper.max_opening) for name, arm in self.robot.arms.items()
             }
         stop, why = why_to_stop(command, self.robot)
-        if stop is DriveReason.NONE:
-            self._grip(command)
-        self._guard.look(q, view.openings or self._openings, base)
+        self._guard.look(q, self._widest(view), base)
+        cramped = self._grip(command, view) if stop is DriveReason.NONE else set()
+        self._guard.look(q, self._widest(view), base)
         intents = self._intents(command if stop is DriveReason.NONE else DriveCommand(), q, turn, view, dt)
         wanted = self._wanted(intents, command, stop)
         reasons = {name: (each.reason, each.detail) for name, each in intents.items()} | {
             "base": (DriveReason.NONE, "")
         }
+        reasons |= {name: (DriveReason.COLLISION, "no room for the fingers to open") for name in cramped}
         target = self._limited(wanted, intents, q, reasons) if wanted.any() else wanted
         velocity = self._advance(target, stop is DriveReason.NONE, q, base, dt, reasons)
         if stop is DriveReason.NONE:
@@ -127,10 +128,23 @@ class RobotServo:
             raise ServoError(f"dt is {dt}, allowed above 0 up to 1 s")
         return view.q
 
-    def _grip(self, command: DriveCommand) -> None:
+    def _widest(self, view: ServoView) -> dict[str, float]:
+        """Gaps to keep distance with [m]: fingers that were told to open will soon be there."""
+        return {name: max(view.openings.get(name, told), told) for name, told in self._openings.items()}
+
+    def _grip(self, command: DriveCommand, view: ServoView) -> set[str]:
+        """Tell the fingers what to do; returns the arms whose fingers have no room to open."""
+        cramped = set()
         for name, wish in command.arms.items():
-            if wish.gripper != "keep":
-                self._openings[name] = 0.0 if wish.gripper == "close" else self.robot.arms[name].gripper.max_opening
+            widest = self.robot.arms[name].gripper.max_opening
+            if wish.gripper == "close":
+                self._openings[name] = 0.0
+            elif wish.gripper == "open" and self._openings[name] != widest:
+                if self._guard.has_room(self._widest(view) | {name: widest}):
+                    self._openings[name] = widest
+                else:
+                    cramped.add(name)
+        return cramped
 
     def _intents(
         self, command: DriveCommand, q: FloatArray, turn: FloatArray, view: ServoView, dt: float

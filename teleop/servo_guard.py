@@ -105,6 +105,14 @@ class ServoGuard:
         self._pairs.home(base)
         self._now.move(self._pairs.positions(q, openings), base)
 
+    def has_room(self, openings: Mapping[str, float]) -> bool:
+        """Whether other gaps [m] bring no pair too near that may not touch, or bring it no nearer, where we are."""
+        end = self._end
+        end.move(self._pairs.positions(self._q, openings), self._base)
+        near = end.below(self._least)
+        near = near[~self.contacts[near]]
+        return not len(near) or bool(np.all(end.refine(near) >= self._now.refine(near) - 1e-9))
+
     def dampers(self, wanted: FloatArray, braking: FloatArray) -> Dampers:
         """What limits a wanted motion.
 
