@@ -22,6 +22,8 @@ from tests.teleop.virtual_pads import ARCADE_STICK, VirtualPad
 
 REPOSITORY = Path(__file__).resolve().parent.parent.parent
 APP = (
+    # A test run in the background of a shell ignores Ctrl-C, and so would what it starts.
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
     "import typer; from executor.commands import devices; from executor.commands.output import ShowtellGroup\n"
     "app = typer.Typer(cls=ShowtellGroup)\n@app.callback()\ndef root() -> None: ...\ndevices.add_to(app)\napp()"
 )
