@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from executor.errors import InputError
-from executor.quiet import load_physics
+from twin.quiet import load_physics
 
 VARIETY = 0.25
 """Usual probability of each word being a synonym of the plain one."""

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from executor.errors import ExecutorError, InputError
-from executor.quiet import load_physics
 from learning.train_robots import Release, Scene, ShownMove, scene_spec
 from robots.errors import ShowtellError
 from twin.board import BLOCK, CELL, cell_centre
+from twin.quiet import load_physics
 
 if TYPE_CHECKING:
     from twin import WorldState

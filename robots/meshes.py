@@ -5,13 +5,9 @@ millimetres of itself. Decimated copies are kept in the user's cache directory, 
 from.
 """
 
-import atexit
-import functools
 import hashlib
 import os
-import shutil
 import sys
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +15,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from .cache import own_folder, user_folder, write_whole
 from .errors import RobotError
 from .pose import FloatArray
 from .triangle_mesh import FEWEST_TRIANGLES, TriangleMesh, decimate
@@ -184,36 +181,18 @@ def kept(path: Path, what: str, make: Callable[[], TriangleMesh]) -> Path:
     try:
         return _write(mesh, _cache_directories()[0] / name)
     except OSError:
-        return _write(mesh, _own_directory() / name)
+        return _write(mesh, own_folder("meshes") / name)
 
 
 def _cache_directories() -> tuple[Path, ...]:
     """Where decimated meshes are kept: the user's cache, and this process's own directory if it already has one."""
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    own = (_own_directory(),) if _own_directory.cache_info().currsize else ()
-    return (base / "showtell" / "meshes", *own)
-
-
-@functools.cache
-def _own_directory() -> Path:
-    """A directory of this process, deleted at its end."""
-    directory = Path(tempfile.mkdtemp(prefix="showtell-meshes-"))
-    atexit.register(shutil.rmtree, directory, ignore_errors=True)
-    return directory
+    own = (own_folder("meshes"),) if own_folder.cache_info().currsize else ()
+    return (user_folder("meshes"), *own)
 
 
 def _write(mesh: TriangleMesh, path: Path) -> Path:
     """Write an OBJ file that appears whole or not at all, and return its path."""
-    path.parent.mkdir(parents=True, exist_ok=True)
     rows = mesh.vertices if mesh.colours is None else np.hstack((mesh.vertices, mesh.colours))
     lines = ["v " + " ".join(f"{value:.7g}" for value in row) for row in rows.tolist()]
     lines += ["f {} {} {}".format(*face) for face in (mesh.faces + 1).tolist()]
-    handle, temporary = tempfile.mkstemp(suffix=".obj", dir=path.parent)
-    try:
-        with os.fdopen(handle, "w", encoding="ascii") as file:
-            file.write("\n".join(lines) + "\n")
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-    return path
+    return write_whole(path, "\n".join(lines) + "\n")

@@ -4,18 +4,14 @@ PyBullet reads neither `package://` in a file that was moved nor 400,000 triangl
 user's cache and is made once; a URDF that needs nothing is used where it is.
 """
 
-import atexit
 import hashlib
-import os
-import shutil
-import tempfile
 import xml.etree.ElementTree as ElementTree
 from copy import deepcopy
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
+from .cache import own_folder, user_folder, write_whole
 from .errors import RobotError
 from .hulls import convex_pieces
 from .kinematics import rpy_matrix
@@ -50,35 +46,13 @@ def prepare_urdf(folder: Path, spec: RobotFile) -> Path:
             ElementTree.SubElement(inertial, "inertia", moments)
     text = ElementTree.tostring(root, encoding="unicode")
     name = f"{spec.name}-{hashlib.sha256(text.encode()).hexdigest()[:16]}.urdf"
-    for cache in (_user_cache, _own_cache):
+    for kept_in in (user_folder, own_folder):
         try:
-            return _written(text, cache() / name)
+            path = kept_in("robots") / name
+            return path if path.is_file() else write_whole(path, text)
         except OSError:
             continue
     raise RobotError(f"{source}: no folder can be written to keep the prepared URDF in: set XDG_CACHE_HOME to one")
-
-
-def _user_cache() -> Path:
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "showtell" / "robots"
-
-
-@lru_cache(maxsize=1)
-def _own_cache() -> Path:
-    """A folder of this process, deleted at its end, for where the user's cache cannot be written."""
-    folder = Path(tempfile.mkdtemp(prefix="showtell-robots-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
-
-
-def _written(text: str, path: Path) -> Path:
-    """Write a file that appears whole, unless it is there."""
-    if not path.is_file():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".urdf")
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(temporary, path)
-    return path
 
 
 def _find_meshes(root: ElementTree.Element, source: Path) -> bool:

@@ -15,6 +15,7 @@ from pathlib import Path
 import orjson
 
 from robots.errors import ShowtellError
+from twin.quiet import load_physics
 
 from .errors import TeleopError
 from .loop_channel import Channel, ChannelClosedError
@@ -81,7 +82,7 @@ def run_loop(channel: Channel) -> None:
     while not (messages := channel.receive()):
         select.select([channel], [], [])
     settings = orjson.loads(messages[0])
-    _load_physics()
+    load_physics()
     from .loop import ControlLoop
     from .loop_deck import Deck
 
@@ -108,18 +109,6 @@ def check_started(message: bytes) -> None:
     """
     if message[:1] == b"J" and (told := orjson.loads(message[1:]))["type"] == "failed":
         raise TeleopError(told["message"])
-
-
-def _load_physics() -> None:
-    """Load PyBullet without the line that it prints from C."""
-    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 2)
-        import twin.world  # noqa: F401
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(nowhere)
 
 
 if __name__ == "__main__":

@@ -103,9 +103,11 @@ class RobotServo:
                 name: view.openings.get(name, arm.gripper.max_opening) for name, arm in self.robot.arms.items()
             }
         stop, why = why_to_stop(command, self.robot)
-        self._guard.look(q, self._widest(view), base)
+        widest = self._widest(view)
+        self._guard.look(q, widest, base)
         cramped = self._grip(command, view) if stop is DriveReason.NONE else set()
-        self._guard.look(q, self._widest(view), base)
+        if (told := self._widest(view)) != widest:
+            self._guard.look(q, told, base)
         intents = self._intents(command if stop is DriveReason.NONE else DriveCommand(), q, turn, view, dt)
         wanted = self._wanted(intents, command, stop)
         reasons = {name: (each.reason, each.detail) for name, each in intents.items()} | {

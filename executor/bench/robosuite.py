@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from robots.cache import user_folder
+
 PACKAGES = ("robosuite==1.5.2", "mujoco==3.3.7", "numpy<2")
 """What is installed: robosuite 1.5.2 does not work with MuJoCo 4 (an assertion about joint types fails)."""
 
@@ -43,7 +45,7 @@ def robosuite_speed(seed: int, log: Path) -> tuple[dict[str, float | None], tupl
     Returns:
         Its figures, and notes; no figures and the reason where it cannot be installed or run.
     """
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "showtell" / "robosuite"
+    home = user_folder("robosuite")
     python = home / "bin" / "python"
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w", encoding="utf-8") as out:

@@ -35,7 +35,7 @@ class ShowtellGroup(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; a `ShowtellError` becomes one line on stderr and exit code 2, Ctrl-C exit code 130."""
-        from executor.quiet import load_physics
+        from twin.quiet import load_physics
 
         try:
             load_physics()
