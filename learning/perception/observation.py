@@ -1,6 +1,7 @@
 """What perception got from one demo: tracks of the gripper and the objects, with noise."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,13 @@ class Observation:
         location: Object centres in the world, (F, N, 3) [m].
         colour: Hue, saturation, lightness in 0..1, (F, N, 3).
         shape: FPFH descriptors, (F, N, 33).
+        visible: Whether each object was seen in each frame, (F, N); what is not seen is where it was last believed to
+            be. None: all were seen.
+        extent: Length, width and height of each object as far as it was seen, along its own upright axes,
+            (F, N, 3) [m]; None where only points are known.
+        gripper_opening: Measured gap between the fingers, (F,) [m]; None where it is not felt.
+        wrist_force: Force felt at the wrist, axes of the world, (F, 3) [N]; None where it is not felt.
+        features: Measured values of further feature spaces by their name, (F, N, m); NaN where they are not known.
     """
 
     times: FloatArray
@@ -29,3 +37,8 @@ class Observation:
     location: FloatArray
     colour: FloatArray
     shape: FloatArray
+    visible: NDArray[np.bool_] | None = None
+    extent: FloatArray | None = None
+    gripper_opening: FloatArray | None = None
+    wrist_force: FloatArray | None = None
+    features: Mapping[str, FloatArray] = field(default_factory=dict)
