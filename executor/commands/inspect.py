@@ -17,17 +17,22 @@ def inspect(
     scene: Annotated[str, typer.Option(help="Scene for the sentence: `board` or a TOML file.")] = "board",
     rules: Annotated[int, typer.Option(min=0, help="How many grammar rules to list.")] = 25,
     everything: Annotated[bool, typer.Option("--all", help="List concepts that no word means, too.")] = False,
+    html: Annotated[Path | None, typer.Option(help="Write what was learned as one HTML page, with drawings.")] = None,
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
-    """Show what was learned as tables, or the tree by which a sentence is understood in a scene.
+    """Show what was learned as tables or as a page, or the tree by which a sentence is understood in a scene.
 
     Example: showtell inspect knowledge.json "put the red cube on the blue cube" --seed 7
+
+    Example: showtell inspect knowledge.json --html knowledge.html
     """
     from learning import Knowledge
 
     out = Output(as_json)
     learned = Knowledge.load(knowledge)
+    if html is not None:
+        _write_page(out, learned, html, knowledge.name)
     if sentence is None:
         tell_knowledge(out, learned, rules, everything)
     else:
@@ -106,6 +111,16 @@ def tell_words(out: Output, knowledge: "Knowledge", everything: bool = False) ->
     passed = function_words(knowledge)
     if passed:
         out.say("words that carry no concept: " + ", ".join(passed[:20]))
+
+
+def _write_page(out: Output, learned: "Knowledge", html: Path, source: str) -> None:
+    """Write the page."""
+    from executor.files import written_whole
+    from executor.knowledge_page import knowledge_page
+
+    with written_whole(html) as temporary:
+        temporary.write_text(knowledge_page(learned, source), encoding="utf-8")
+    out.say(f"wrote {html}")
 
 
 def _understand(out: Output, knowledge: "Knowledge", sentence: str, scene: str, seed: int) -> None:
