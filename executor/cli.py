@@ -18,6 +18,7 @@ from executor.commands import (
     import_demos,
     inspect,
     learn,
+    perceive,
     record,
     replay,
     robots,
@@ -62,6 +63,7 @@ serve.add_to(app)
 app.add_typer(import_demos.app, name="import")
 demos.add_to(app)
 replay.add_to(app)
+perceive.add_to(app)
 learn.add_to(app)
 inspect.add_to(app)
 do.add_to(app)

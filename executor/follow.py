@@ -31,7 +31,7 @@ def follow(
 
     Args:
         world: The twin.
-        trajectory: Of the joints that move, from where they are.
+        trajectory: Of the joints that move, from where they are, but for whole turns of those that turn for ever.
         joints: Which of the robot's joints these are.
         openings: Gap of each arm's fingers meanwhile [m].
         until: Asked after each step whether to stop; then the trajectory is slowed down to rest within `STOP`, which
@@ -41,6 +41,9 @@ def follow(
         Whether it was stopped.
     """
     gaps = tuple(openings)  # who keeps a command must not see it change
+    start = trajectory.at(0.0)[0]
+    endless = np.isinf(world.robot.lower[joints]) & np.isinf(world.robot.upper[joints])
+    turns = 2 * np.pi * endless * np.round((world.commanded_positions[joints] - start) / (2 * np.pi))
     step, late, rate, stopping = 0, 0.0, 1.0, False
     while rate > 0.0 and step * World.DT - late < trajectory.duration - 1e-9 * World.DT:
         if stopping:
@@ -49,7 +52,7 @@ def follow(
         late += (1.0 - rate) * World.DT
         wanted, _, _ = trajectory.at(min(step * World.DT - late, trajectory.duration))
         velocity: FloatArray = np.zeros(len(world.robot.joint_names))
-        velocity[joints] = (wanted - world.commanded_positions[joints]) / World.DT
+        velocity[joints] = (wanted + turns - world.commanded_positions[joints]) / World.DT
         world.step(JointCommand(velocity, gaps))
         stopping = stopping or (until is not None and until())
     return stopping

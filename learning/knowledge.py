@@ -8,8 +8,10 @@ from typing import Any
 
 from learning.concept_id import Concept
 from learning.concepts import ConceptSpaces
+from learning.concepts.space_set import BOARD, SpaceSet
 from learning.errors import KnowledgeError
 from learning.grammar.actions import ActionTable
+from learning.graphs.action_graphlet import ActionGraphlet
 from learning.grounding.language_learner import LanguageLearner
 from learning.knowledge_check import check_language
 from learning.percept import Percept
@@ -34,33 +36,40 @@ class Knowledge:
         bearing: Sightings of each shape concept with something on top.
     """
 
-    def __init__(self) -> None:
-        """Start knowing nothing."""
-        self.spaces = ConceptSpaces()
+    def __init__(self, spaces: SpaceSet | str = BOARD) -> None:
+        """Start knowing nothing.
+
+        Args:
+            spaces: The feature spaces to learn in, or the name of a known set of them.
+
+        Raises:
+            KnowledgeError: No set has that name.
+        """
+        self.spaces = ConceptSpaces(spaces)
         self.language = LanguageLearner()
         self.demos = 0
         self.sentences = 0
         self.seen: defaultdict[int, float] = defaultdict(float)
         self.bearing: defaultdict[int, float] = defaultdict(float)
-        self._table: tuple[int, ActionTable] | None = None
+        self._table: tuple[dict[int, ActionGraphlet], ActionTable] | None = None
 
     def action_table(self) -> ActionTable:
         """Give the properties of the known action graphlets, and which two amount to which third."""
         library = self.spaces.actions
-        if self._table is None or self._table[0] != len(library):
-            known = library.numbered
+        known = dict(library.numbered)
+        if self._table is None or self._table[0] != known:
             composed = {}
             for first, one in known.items():
                 for second, two in known.items():
-                    if _holds(one.states[-1]) and _holds(two.states[0]):
+                    if one.states[-1].holds and two.states[0].holds:
                         number = library.find(one.followed_by(two))
                         if number is not None and number not in (first, second):
                             composed[first, second] = number
             self._table = (
-                len(library),
+                known,
                 ActionTable(
-                    {n: _holds(graphlet.states[0]) for n, graphlet in known.items()},
-                    {n: _holds(graphlet.states[-1]) for n, graphlet in known.items()},
+                    {n: graphlet.states[0].holds for n, graphlet in known.items()},
+                    {n: graphlet.states[-1].holds for n, graphlet in known.items()},
                     composed,
                 ),
             )
@@ -167,10 +176,6 @@ class Knowledge:
         except (ValueError, RecursionError) as error:  # RecursionError: brackets nested without end
             raise KnowledgeError(f"{path}: is not JSON ({error}); give a file that `showtell learn` wrote") from None
         return cls.from_json(data, str(path))
-
-
-def _holds(state: Any) -> bool:
-    return bool(state.gripper_closed and state.touching)
 
 
 def _readable(data: Any, depth: int = 0) -> str:

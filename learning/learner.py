@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from learning.concepts import DemoConcepts, fit_demo
+from learning.concepts.space_set import BOARD, COUNTER, TABLE
 from learning.errors import PerceptionError
 from learning.grammar.scene import SceneSets
+from learning.graphs.action_states import shown_action
 from learning.grounding.ngrams import words_of
 from learning.knowledge import Knowledge
-from learning.perception import Observation, observe_demo, perceive
+from learning.perception import Observation, perceive, perceive_any
 
 if TYPE_CHECKING:
     from teleop import Demo
@@ -24,28 +26,41 @@ class Lesson:
     Attributes:
         sentences: Sentences heard with it.
         validated: How many of them were read in a way that does what was shown.
+        unheard: How many more came with it, of which nothing could be learned: no action was seen, or it was shown at a
+            table, whose language is not learned yet.
     """
 
     sentences: int
     validated: int
+    unheard: int = 0
 
 
 class Learner:
-    """Learns from one demo at a time; no demo is needed again (thesis 3.4, 4.8)."""
+    """Learns from one demo at a time; no demo is needed again (thesis 3.4, 4.8).
+
+    What is shown on the board teaches concepts, actions and language; what a camera saw at a table, concepts and
+    actions.
+    """
 
     def __init__(self, knowledge: Knowledge | None = None, seed: int = 0) -> None:
         """Go on from earlier knowledge, or start knowing nothing.
 
         Args:
-            knowledge: What was learned before; it is updated in place.
+            knowledge: What was learned before; it is updated in place. Where there is none, the first demo says in
+                which feature spaces to learn.
             seed: Seed of the noise of perception and of the choice of points to cluster.
         """
+        self._unsettled = knowledge is None
         self.knowledge = Knowledge() if knowledge is None else knowledge
         self.rng = np.random.default_rng([seed, self.knowledge.demos])
 
     def observe(self, demo: "Demo") -> Lesson:
-        """Learn from a recorded demo and its utterances."""
-        return self.study(observe_demo(demo, self.rng), demo.utterances)
+        """Learn from a recorded demo and its utterances.
+
+        Raises:
+            PerceptionError: The demo shows what this knowledge has no feature spaces for, or cannot be perceived.
+        """
+        return self.study(perceive_any(demo, self.rng).observation, demo.utterances)
 
     def study(
         self, observation: Observation, utterances: Iterable[str], concepts: DemoConcepts | None = None
@@ -56,23 +71,44 @@ class Learner:
             observation: Tracks of one demo.
             utterances: Sentences about it.
             concepts: The demo's own mixtures where they were computed before (`fit_demo`).
+
+        Raises:
+            PerceptionError: This knowledge has no feature spaces for what is shown.
         """
+        self._settle(observation)
         knowledge = self.knowledge
-        knowledge.spaces.update(fit_demo(observation, self.rng) if concepts is None else concepts)
+        spaces = knowledge.spaces
+        spaces.update(fit_demo(observation, self.rng, spaces.space_set) if concepts is None else concepts)
         knowledge.follow_aliases()
         knowledge.demos += 1
+        words = [each for each in map(words_of, utterances) if each]
         try:
-            percept, shown = perceive(observation, knowledge.spaces)
+            if observation.extent is not None:
+                graphlet, measures, _ = shown_action(observation, spaces)
+                spaces.actions.match_or_add(graphlet, measures)
+                return Lesson(0, 0, len(words))
+            percept, shown = perceive(observation, spaces)
         except PerceptionError:
-            return Lesson(0, 0)  # nothing moved: there is an arrangement to look at but no action to speak of
+            return Lesson(0, 0, len(words))  # nothing moved: an arrangement to look at, but no action to speak of
         knowledge.count_bearing(percept)
         scene = SceneSets(percept, knowledge.bearing_shapes())
         table = knowledge.action_table()
-        heard = validated = 0
-        for utterance in utterances:
-            words = words_of(utterance)
-            if words:
-                heard += 1
-                validated += knowledge.language.learn(words, percept, shown, scene, table)
-        knowledge.sentences += heard
-        return Lesson(heard, validated)
+        validated = sum(knowledge.language.learn(each, percept, shown, scene, table) for each in words)
+        knowledge.sentences += len(words)
+        return Lesson(len(words), validated)
+
+    def _settle(self, observation: Observation) -> None:
+        """Choose feature spaces by the first demo; refuse what they are not made for."""
+        at_table = observation.extent is not None
+        if self._unsettled:
+            self._unsettled = False
+            if at_table:
+                # What things weigh can be learned where the wrist feels.
+                self.knowledge = Knowledge(TABLE if observation.wrist_force is None else COUNTER)
+        name = self.knowledge.spaces.space_set.name
+        if at_table == (name == BOARD.name):
+            shown, made = ("a table", "the board") if at_table else ("the board", "tables")
+            raise PerceptionError(
+                f"the demo shows {shown}, but this knowledge was made on {made} (feature spaces '{name}'): "
+                "learn it into a file of its own"
+            )

@@ -1,117 +1,132 @@
 """Distances for control loops: of all pairs that may not touch, each worked out only when it could matter.
 
 Between two postures no distance changes by more than the levers of the joints allow. A pair whose distance was worked
-out once is therefore known to be at least so far away for a while, and most of thousands of pairs are never looked at
-again. What is said is exact or a lower bound, never a guess.
+out once is therefore known to be at least so far away for a while. After that a plane between the two, found or carried
+along, says it again (`near_kernel`). Distances are worked out only of pairs that are as near as matters. What is said
+is exact or a lower bound, never a guess. No bound is higher than what coal would say, so that it makes no difference
+which of them happen to be known.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from itertools import combinations
 
 import numpy as np
-import pinocchio as pin
-from numpy.typing import NDArray
 
 from .collision import CollisionModel
-from .kinematics import rotation_matrix
 from .model import RobotModel
-from .obstacle import Obstacle
+from .near_kernel import BoolArray, IntArray, Scene, packed, unpacked
+from .near_shapes import RobotShapes, Shape, pose_row
+from .obstacle import FLOOR, Obstacle
+from .pair_track import PairTrack, angle_between
 from .pose import FloatArray, Pose
 
-IntArray = NDArray[np.int64]
+_NOTHING: Mapping[str, Sequence[Obstacle]] = {}
 
 
 class NearPairs:
-    """The pairs of a collision model, and how far the robot's joints move the two of each towards each other.
+    """The pairs that may not touch, and how far the robot's joints move the two of each towards each other.
+
+    Pairs are those of `CollisionModel`, in the same order.
 
     Attributes:
         robot: The robot.
         names: The two names of each pair, k of them.
-        levers: Bound of the relative motion of each pair for each unit of motion, (k, nv + 2) [m/rad or m/m]: of
-            Pinocchio's joints, then of the base's shift and turn.
+        firsts: The first shape of each pair, k of them.
+        seconds: The second of each.
+        solids: All shapes for coal, g of them: of links, of what is held, of what is around.
+        carried: How many of the shapes joints carry; they come first.
+        scene: All as arrays: views of `whole` and `numbers`.
+        whole: What the compiled loops take; see `near_kernel.packed`.
+        numbers: What they take besides.
+        version: Counts how often what is around was placed.
         matrix: How driven joints move Pinocchio's, (nv, n).
         contacts: Pairs that handling things brings together: a finger or what is held, and a thing, (k,).
-        whole_reach: How far each geometry's farthest point may be from the base's origin [m].
     """
 
-    def __init__(self, collision: CollisionModel) -> None:
-        """Take the pairs of a model, whose geometry must not be changed afterwards but through `place`."""
-        self.robot = collision.robot
-        self._model, self._geometry = collision._model, collision._geometry
-        self._around, self._things = list(collision._around), list(collision.obstacles)
-        self._carried = collision._carried
-        self._in_hand = {
-            index: thing
-            for arm, indices in self._carried.items()
-            for index, thing in zip(indices, collision.held[arm], strict=True)
-        }
-        self._in_world = [_placement(each.pose_obstacle_in_world) for each in self._things]
-        pairs = [(int(each.first), int(each.second)) for each in self._geometry.collisionPairs]
-        self._first = np.array([pair[0] for pair in pairs], dtype=np.int64)
-        self._second = np.array([pair[1] for pair in pairs], dtype=np.int64)
-        self.names = [(collision._names[a], collision._names[b]) for a, b in pairs]
-        self._homed: Pose | None = None
-        self._neutral = pin.neutral(self._model)
-        self._plain = self._model.nq == self._model.nv
-        self._offsets: tuple[tuple[float, ...], FloatArray] | None = None
-        self.matrix = self._matrix()
-        self._moved_by, reaches, self.whole_reach = _levers(self._model, self._geometry)
-        around = np.zeros(self._geometry.ngeoms, dtype=bool)
-        around[self._around] = True
-        one, other = self._moved_by[self._first], self._moved_by[self._second]
-        alone = one != other  # a joint that carries both does not move one against the other
-        levers = np.where(alone & one, reaches[self._first], 0.0) + np.where(alone & other, reaches[self._second], 0.0)
-        self._apart = around[self._second].astype(float) - around[self._first].astype(float)
-        turning = np.abs(self._apart) * np.where(
-            self._apart > 0, self.whole_reach[self._first], self.whole_reach[self._second]
-        )
-        self.levers: FloatArray = np.ascontiguousarray(np.column_stack((levers, np.abs(self._apart), turning)))
-        thing = around.copy()
-        thing[list(self._in_hand)] = True
-        touching = _fingers(self._model, self._geometry, self.robot)
-        touching[list(self._in_hand)] = True
-        first, second = self._first, self._second
-        self.contacts = (touching[first] & thing[second]) | (touching[second] & thing[first])
-        self._sign = other.astype(float) - one.astype(float)
+    def __init__(
+        self,
+        robot: RobotModel | CollisionModel,
+        obstacles: Sequence[Obstacle] = (),
+        held: Mapping[str, Sequence[Obstacle]] = _NOTHING,
+        own: RobotShapes | None = None,
+    ) -> None:
+        """Build the geometry.
 
-    def place(self, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]]) -> FloatArray:
+        Args:
+            robot: The robot.
+            obstacles: Things around it.
+            held: Things in the grippers, by arm; `pose_obstacle_in_world` is then the pose in the tool's frame.
+            own: The robot's shapes, to be quick where they were made before.
+
+        Raises:
+            RobotError: `held` names an arm that the robot does not have.
+        """
+        if isinstance(robot, CollisionModel):  # TEMPORARY, for executor/collections/rehearsal.py
+            collision, obstacles, held = robot, robot.obstacles, robot.held
+            robot = collision.robot
+        for arm in held:
+            robot.slice_of(arm)
+        self.robot = robot
+        self.own = RobotShapes(robot) if own is None else own
+        self._things = list(obstacles)
+        shapes, self._held = list(self.own.shapes), {}
+        in_hand: list[Obstacle] = []
+        for arm, things in held.items():
+            self._held[arm] = range(len(shapes), len(shapes) + len(things))
+            shapes += [self.own.held(arm, thing) for thing in things]
+            in_hand += things
+        self._in_hand = dict(enumerate(in_hand, len(self.own.shapes)))
+        self.carried = len(shapes)
+        shapes += [self.own.around(thing) for thing in obstacles]
+        self.solids = [each.solid for each in shapes]
+        self._reaches = [float(np.linalg.norm(each.ball[:3])) + float(each.ball[3]) for each in shapes]
+        first, second = self._chosen(shapes)
+        self.whole, self.numbers = packed(self._made(shapes, first, second))
+        self.scene = Scene(*unpacked(self.whole, self.numbers))
+        self.version = 0
+        self.firsts, self.seconds = first.tolist(), second.tolist()
+        named = [each.name for each in shapes]
+        self.names = [(named[a], named[b]) for a, b in zip(self.firsts, self.seconds, strict=True)]
+        thing, touching = np.zeros(len(shapes), dtype=np.bool_), np.zeros(len(shapes), dtype=np.bool_)
+        thing[len(self.own.shapes) :] = True
+        touching[self.own.fingers] = True
+        touching[len(self.own.shapes) : self.carried] = True
+        self.contacts: BoolArray = (touching[first] & thing[second]) | (touching[second] & thing[first])
+        self._offsets: tuple[tuple[float, ...], FloatArray] | None = None
+        self._columns = self.own.columns
+        self.matrix = self._matrix()
+        self._row: tuple[Pose, FloatArray] | None = None
+        self._rows: tuple[Pose, FloatArray] | None = None
+
+    def place(self, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]] = _NOTHING) -> FloatArray:
         """Put the same obstacles and held things elsewhere; their number, order and shapes stay.
 
         Returns:
             By how much each pair's distance may have shrunk, (k,) [m].
         """
-        shift = np.zeros(self._geometry.ngeoms)
+        shift = np.zeros(len(self.solids))
         for number, each in enumerate(obstacles):
             if each.pose_obstacle_in_world is not self._things[number].pose_obstacle_in_world:
-                shift[self._around[number]] = self._shift(self._around[number], self._things[number], each)
-                self._in_world[number] = _placement(each.pose_obstacle_in_world)
+                index = self.carried + number
+                shift[index] = self._shift(index, self._things[number], each)
+                self.scene.frame[index] = pose_row(each.pose_obstacle_in_world)
                 self._things[number] = each
-                self._homed = None
+                self.version += 1
         for arm, things in held.items():
-            for index, each in zip(self._carried[arm], things, strict=True):
-                shift[index] = self._shift(index, self._in_hand[index], each)
-                self._in_hand[index] = each
-                geometry = self._geometry.geometryObjects[index]
-                frame = self._model.frames[geometry.parentFrame]
-                geometry.placement = frame.placement * _placement(each.pose_obstacle_in_world)
-        return np.asarray(shift[self._first] + shift[self._second])
+            for index, each in zip(self._held[arm], things, strict=True):
+                if each.pose_obstacle_in_world is not self._in_hand[index].pose_obstacle_in_world:
+                    shift[index] = self._shift(index, self._in_hand[index], each)
+                    shape = self.own.held(arm, each)
+                    self.scene.frame[index] = shape.frame
+                    chain = self.own.chain(shape)
+                    self.scene.reach[index, : len(chain)] = [reach for _, _, reach in chain]
+                    self._in_hand[index] = each
+        return np.asarray(shift[self.scene.first] + shift[self.scene.second])
 
-    def home(self, base: Pose) -> None:
-        """Place the obstacles for a base that stands at a pose: tracks at that pose are then quick."""
-        if self._homed is None or not _same(self._homed, base):
-            to_base = _placement(base).inverse()
-            for index, in_world in zip(self._around, self._in_world, strict=True):
-                self._geometry.geometryObjects[index].placement = to_base * in_world
-            self._homed = base
+    def home(self, base: Pose) -> None:  # TEMPORARY, for executor/collections/rehearsal.py
+        """Nothing to do any more."""
 
-    def _shift(self, index: int, before: Obstacle, after: Obstacle) -> float:
-        """How far a thing's farthest point may have moved [m]."""
-        one, other = before.pose_obstacle_in_world, after.pose_obstacle_in_world
-        shape = self._geometry.geometryObjects[index].geometry
-        reach = float(np.linalg.norm(shape.aabb_center)) + float(shape.aabb_radius)
-        return float(np.linalg.norm(one.position - other.position)) + reach * _angle(one, other)
-
-    def track(self) -> "PairTrack":
+    def track(self) -> PairTrack:
         """Follow a posture of its own."""
         return PairTrack(self)
 
@@ -124,182 +139,118 @@ class NearPairs:
             self._offsets = key, self._vector(self.robot.expand(home, openings)) - self.matrix @ home
         return np.asarray(self.matrix @ q + self._offsets[1])
 
+    def positions_after(self, positions: FloatArray, way: FloatArray) -> FloatArray:
+        """Positions (nv,) where driven joints have gone a way (n,), or (n + 2,) with the base's."""
+        return np.asarray(positions + self.matrix @ way[: self.matrix.shape[1]])
+
+    def rows_of(self, bases: Sequence[Pose]) -> FloatArray:
+        """Poses of the base as `row_of` gives them, (m, 12)."""
+        if any(base is not bases[0] for base in bases):
+            return np.array([self.row_of(base) for base in bases])
+        if self._rows is None or self._rows[0] is not bases[0] or len(self._rows[1]) != len(bases):
+            self._rows = bases[0], np.tile(self.row_of(bases[0]), (len(bases), 1))
+        return self._rows[1]
+
+    def row_of(self, base: Pose) -> FloatArray:
+        """A pose of the base as rotation matrix, row by row, and position, (12,)."""
+        if self._row is None or self._row[0] is not base:
+            self._row = base, pose_row(base)
+        return self._row[1]
+
+    def gone(self, sums: FloatArray, which: IntArray) -> FloatArray:
+        """How far the two of each pair go at most, one against the other, by sums of levers, (len(which),) [m]."""
+        return np.asarray(sums[self.scene.one[which]] + sums[self.scene.other[which]])
+
+    def moved_by(self, which: IntArray) -> BoolArray:
+        """Which motions of driven joints, and of the base, change distances of pairs, (n + 2,)."""
+        scene, width = self.scene, self.scene.reach.shape[1] + 1
+        moves = np.zeros(len(self.matrix) + 2, dtype=np.bool_)
+        for cell in (*scene.one[which].tolist(), *scene.other[which].tolist()):
+            row, behind = divmod(cell, width)
+            moves[scene.lever[row, behind:][scene.reach[row, behind:] > 0.0]] = True
+        return np.concatenate(((self.matrix != 0.0).T @ moves[:-2], moves[-2:]))
+
+    def _chosen(self, shapes: Sequence[Shape]) -> tuple[IntArray, IntArray]:
+        """Which shapes make the pairs, (k,) each; see `CollisionModel`."""
+        own, robot = self.own, self.robot
+        pairs = [own.pairs]
+        links = np.arange(len(own.shapes))
+        for arm, indices in self._held.items():
+            outside = links[[i not in own.hands[arm] for i in links.tolist()]]
+            pairs += [np.column_stack((outside, np.full(len(outside), index))) for index in indices]
+        for left, right in combinations(self._held.values(), 2):
+            pairs.append(np.array([(a, b) for a in left for b in right], dtype=np.int64).reshape(-1, 2))
+        movers = np.array([*own.movers, *range(len(own.shapes), self.carried)], dtype=np.int64)
+        around = np.arange(self.carried, len(shapes))
+        pairs.append(np.column_stack((np.tile(movers, len(around)), np.repeat(around, len(movers)))))
+        allowed = set(robot.may_touch)
+        if robot.drive is not None:
+            allowed |= {frozenset((link, FLOOR)) for link in robot.drive.on_floor}
+        named: dict[str, list[int]] = {}
+        for index, shape in enumerate(shapes):
+            named.setdefault(shape.name, []).append(index)
+        may = np.zeros((len(shapes), len(shapes)), dtype=np.bool_)
+        for pair in allowed:
+            one, other = (*pair, *pair)[:2]
+            for index in named.get(one, []):
+                may[index, named.get(other, [])] = True
+        chosen = np.concatenate(pairs)
+        chosen = chosen[~(may | may.T)[chosen[:, 0], chosen[:, 1]]]
+        return np.ascontiguousarray(chosen[:, 0]), np.ascontiguousarray(chosen[:, 1])
+
+    def _made(self, shapes: Sequence[Shape], first: IntArray, second: IntArray) -> Scene:
+        """All as arrays."""
+        chains = [self.own.chain(each) for each in shapes[: self.carried]]
+        size = self.carried + 1, max((len(each) for each in chains), default=0)
+        chain, lever, reach = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=np.int64), np.zeros(size)
+        moved = np.zeros((len(shapes), self.own.model.nv), dtype=np.int64)
+        for row, links in enumerate(chains):
+            where = row, slice(len(links))
+            chain[where], lever[where], reach[where] = zip(*links, strict=True)
+            moved[row, lever[row, 2 : len(links)]] = 1
+        # The base and joints that carry both are the first ones of both chains; the base moves all but what is around.
+        common = 2 + np.einsum("ij,ij->i", moved[first], moved[second])
+        common = np.where(second >= self.carried, 0, common)
+        stops, joints = np.cumsum([len(each.points) for each in shapes]).tolist(), self.own.joints
+        starts = [0, *stops[:-1]]
+        return Scene(
+            parent=joints.parent,
+            slides=joints.slides,
+            motion=joints.motion,
+            solid=np.array([(each.kind, each.joint, a, b) for each, a, b in zip(shapes, starts, stops, strict=True)]),
+            chain=chain,
+            lever=lever,
+            first=first,
+            second=second,
+            one=first * (size[1] + 1) + common,
+            other=np.minimum(second, self.carried) * (size[1] + 1) + common,
+            joint_frame=joints.frame,
+            joint_axis=joints.axis,
+            form=np.array([np.concatenate((each.size, each.ball)) for each in shapes]),
+            frame=np.array([each.frame for each in shapes]),
+            points=np.concatenate([each.points for each in shapes]),
+            reach=reach,
+            plane=np.zeros((len(first), 3)),
+        )
+
+    def _shift(self, index: int, before: Obstacle, after: Obstacle) -> float:
+        """How far a thing's farthest point may have moved [m]."""
+        one, other = before.pose_obstacle_in_world, after.pose_obstacle_in_world
+        return float(np.linalg.norm(one.position - other.position)) + self._reaches[index] * angle_between(one, other)
+
     def _vector(self, joints: Mapping[str, float]) -> FloatArray:
-        vector = np.zeros(self._model.nv)
+        vector = np.zeros(self.matrix.shape[0])
         for name, value in joints.items():
-            vector[self._row(name)] = value
+            vector[self._columns[name]] = value
         return vector
 
     def _matrix(self) -> FloatArray:
         """How driven joints move all, (nv, n)."""
-        matrix = np.zeros((self._model.nv, len(self.robot.joint_names)))
+        matrix = np.zeros((self.own.model.nv, len(self.robot.joint_names)))
         for arm in self.robot.arms.values():
             start = self.robot.slice_of(arm.name).start
             for column, name in enumerate(arm.joint_names, start):
-                matrix[self._row(name), column] = 1.0
+                matrix[self._columns[name], column] = 1.0
             for each in arm.mimic:
-                matrix[self._row(each.joint), start + arm.joint_names.index(each.source)] = each.ratio
+                matrix[self._columns[each.joint], start + arm.joint_names.index(each.source)] = each.ratio
         return matrix
-
-    def _row(self, joint: str) -> int:
-        return int(self._model.joints[self._model.getJointId(joint)].idx_v)
-
-
-class PairTrack:
-    """Distances along the way of one posture.
-
-    Attributes:
-        bounds: What each pair's distance is at least, (k,) [m]; exact where `exact`.
-        exact: Which are worked out at this very posture, (k,).
-    """
-
-    def __init__(self, pairs: NearPairs) -> None:
-        """Start with nothing known."""
-        self._pairs = pairs
-        self._data = pairs._model.createData()
-        self._geometry_data = pin.GeometryData(pairs._geometry)
-        self._results = self._geometry_data.distanceResults
-        self.bounds: FloatArray = np.full(len(pairs.names), -np.inf)
-        self.exact = np.zeros(len(pairs.names), dtype=bool)
-        self._at: FloatArray | None = None
-        self._base: Pose | None = None
-        self._placed = False
-
-    def shrink(self, by: FloatArray) -> None:
-        """Things were placed elsewhere: distances may have shrunk by as much as `NearPairs.place` says, (k,) [m]."""
-        self.bounds -= by
-        self.exact &= by == 0.0
-        self._placed = False
-
-    def move(self, positions: FloatArray, base: Pose) -> None:
-        """Go to a posture, (nv,) as `NearPairs.positions` gives it, with the base at a pose in the world."""
-        if self._at is None or self._base is None:
-            shift = turn = 0.0
-            travel = np.zeros(len(positions))
-        else:
-            travel = np.abs(positions - self._at)
-            shift = turn = 0.0
-            if base is not self._base and not _same(base, self._base):
-                shift = float(np.linalg.norm(base.position - self._base.position))
-                turn = _angle(base, self._base)
-        if travel.any() or shift or turn:
-            self.bounds -= self._pairs.levers @ np.concatenate((travel, (shift, turn)))
-            self.exact[:] = False
-            self._placed = False
-        self._at, self._base = positions, base
-
-    def jump(self, positions: FloatArray, base: Pose) -> None:
-        """Go to a posture as `move` does, with nothing known there: for looking at a few pairs only."""
-        self._at, self._base, self._placed = positions, base, False
-        self.bounds[:] = -np.inf
-        self.exact[:] = False
-
-    def below(self, thresholds: FloatArray) -> IntArray:
-        """Pairs nearer than thresholds (k,) [m]; their distances are exact afterwards."""
-        doubtful = np.flatnonzero((self.bounds < thresholds) & ~self.exact)
-        if len(doubtful):
-            self.refine(doubtful)
-        return np.flatnonzero(self.bounds < thresholds)
-
-    def refine(self, which: IntArray) -> FloatArray:
-        """Work out distances of pairs [m]."""
-        self._place()
-        geometry, data, results = self._pairs._geometry, self._geometry_data, self._results
-        compute = pin.computeDistance
-        found = []
-        for index in which.tolist():
-            compute(geometry, data, index)
-            found.append(results[index].min_distance)
-        distances = np.array(found)
-        self.bounds[which] = distances
-        self.exact[which] = True
-        return distances
-
-    def gradients(self, which: IntArray) -> FloatArray:
-        """How fast distances grow for each unit of speed, (len(which), n + 2): of driven joints, base's speed and turn.
-
-        The distances must be exact. The two nearest points are taken as fixed to the things that they lie on: of two
-        faces that turn against each other, others may come nearer.
-        """
-        pairs = self._pairs
-        self._place()
-        count = len(which)
-        normals, points = np.empty((count, 3)), np.empty((count, 3))
-        for row, index in enumerate(which.tolist()):
-            result = self._results[index]
-            normals[row], points[row] = result.normal, result.getNearestPoint1()
-        jacobian = pin.computeJointJacobians(pairs._model, self._data)
-        turning = np.cross(points, normals)
-        per_joint = (normals @ jacobian[:3] + turning @ jacobian[3:]) * pairs._sign[which]
-        apart = pairs._apart[which]
-        base = np.column_stack((-apart * normals[:, 0], -apart * turning[:, 2]))
-        return np.concatenate((per_joint @ pairs.matrix, base), axis=1)
-
-    def _place(self) -> None:
-        """Put all geometry where it is at this posture."""
-        if self._placed:
-            return
-        pairs = self._pairs
-        assert self._at is not None and self._base is not None  # `move` comes first
-        q = self._at if pairs._plain else pin.integrate(pairs._model, pairs._neutral, self._at)
-        pin.forwardKinematics(pairs._model, self._data, q)
-        pin.updateGeometryPlacements(pairs._model, self._data, pairs._geometry, self._geometry_data)
-        homed = pairs._homed
-        if pairs._around and (homed is None or not (homed is self._base or _same(homed, self._base))):
-            to_base = _placement(self._base).inverse()
-            placed = self._geometry_data.oMg
-            for index, in_world in zip(pairs._around, pairs._in_world, strict=True):
-                placed[index] = to_base * in_world
-        self._placed = True
-
-
-def _same(one: Pose, other: Pose) -> bool:
-    return bool((one.position == other.position).all() and (one.orientation_xyzw == other.orientation_xyzw).all())
-
-
-def _angle(one: Pose, other: Pose) -> float:
-    """Angle between two orientations [rad], from the chord: exact also for tiny ones."""
-    first, second = one.orientation_xyzw, other.orientation_xyzw
-    chord = min(float(np.linalg.norm(first - second)), float(np.linalg.norm(first + second)))
-    return 4.0 * float(np.arcsin(min(0.5 * chord, 1.0)))
-
-
-def _placement(pose: Pose) -> Any:
-    return pin.SE3(rotation_matrix(pose.orientation_xyzw), np.asarray(pose.position))
-
-
-def _levers(model: Any, geometry: Any) -> tuple[NDArray[np.bool_], FloatArray, FloatArray]:
-    """Which joints move each geometry, how far its farthest point may be from each, and from the base's origin.
-
-    Returns:
-        (g, nv), (g, nv) [m/rad, or 1 for sliding joints], (g,) [m].
-    """
-    moved = np.zeros((geometry.ngeoms, model.nv), dtype=bool)
-    reaches = np.zeros((geometry.ngeoms, model.nv))
-    whole = np.zeros(geometry.ngeoms)
-    for number, each in enumerate(geometry.geometryObjects):
-        shape = each.geometry
-        shape.computeLocalAABB()
-        reach = float(np.linalg.norm(each.placement.act(np.asarray(shape.aabb_center)))) + float(shape.aabb_radius)
-        for joint in reversed(list(model.supports[each.parentJoint])[1:]):
-            column = int(model.joints[joint].idx_v)
-            slides = model.joints[joint].shortname().startswith("JointModelP")
-            moved[number, column] = True
-            reaches[number, column] = 1.0 if slides else reach
-            reach += float(np.linalg.norm(model.jointPlacements[joint].translation))
-            if slides:
-                low, high = (limit[model.joints[joint].idx_q] for limit in _limits(model))
-                reach += max(abs(low), abs(high))
-        whole[number] = reach
-    return moved, reaches, whole
-
-
-def _fingers(model: Any, geometry: Any, robot: RobotModel) -> NDArray[np.bool_]:
-    """Which geometries fingers carry, (g,)."""
-    joints = [name for arm in robot.arms.values() for name in arm.gripper.joints]
-    carried = {int(each) for name in joints for each in model.subtrees[model.getJointId(name)]}
-    return np.array([int(each.parentJoint) in carried for each in geometry.geometryObjects])
-
-
-def _limits(model: Any) -> tuple[FloatArray, FloatArray]:
-    return model.lowerPositionLimit, model.upperPositionLimit

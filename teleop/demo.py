@@ -23,10 +23,12 @@ class InputTrack:
     Attributes:
         axes: (K, 4).
         buttons: (K, 17).
+        arrived: Whether it came since the step before, (K,); else it is an earlier one. None where that was not kept.
     """
 
     axes: FloatArray
     buttons: FloatArray
+    arrived: NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         """Number of control steps, K."""
@@ -145,6 +147,16 @@ class Demo:
     def times(self) -> FloatArray:
         """Times of the states, (T,) [s]."""
         return self.states.times
+
+    def utterances_in(self, language: str) -> tuple[str, ...]:
+        """The sentences in a language, in order; those whose language nobody said count as in any.
+
+        Args:
+            language: Its tag (BCP 47), such as `en`; it stands for all its regions and scripts too, such as `en-GB`.
+        """
+        wanted = language.lower()
+        tags = [(each.text, each.language.lower()) for each in self.sentences]
+        return tuple(text for text, tag in tags if tag in ("", wanted) or tag.startswith(f"{wanted}-"))
 
     @property
     def duration(self) -> float:

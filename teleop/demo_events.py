@@ -16,11 +16,13 @@ class Sentence:
         text: The sentence.
         step: Control step at which it was said; that of the last one where it was said afterwards.
         when: Before, during or after the demo.
+        language: Tag of its language, such as `en` or `ar` (BCP 47); empty where nobody said.
     """
 
     text: str
     step: int = 0
     when: When = "before"
+    language: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +65,7 @@ class Trim:
     Attributes:
         origin: Name of the demo that was recorded.
         first: Its control step that is step 0 here.
-        last: Its control step at which this one ends.
+        last: Its control step at which this one ends; -1 for its end.
     """
 
     origin: str

@@ -42,9 +42,10 @@ _ROWS = {"type": "array", "items": _NUMBERS}
 _SWITCH = {"type": "boolean"}
 
 
-def _schema(title: str, **properties: object) -> bytes:
+def _schema(title: str, *, optional: Mapping[str, object] | None = None, **properties: object) -> bytes:
     fields = {"step": _STEP, **properties}
-    return orjson.dumps({"title": title, "type": "object", "properties": fields, "required": list(fields)})
+    every = {**fields, **(optional or {})}
+    return orjson.dumps({"title": title, "type": "object", "properties": every, "required": list(fields)})
 
 
 def _described(kind: Mapping[str, object], text: str) -> dict[str, object]:
@@ -55,6 +56,7 @@ _GAMEPAD = _schema(
     "W3C standard gamepad",
     axes=_described(_NUMBERS, "left x, left y, right x, right y; -1..1"),
     buttons=_described(_NUMBERS, "17 buttons; 0..1"),
+    optional={"arrived": _described(_SWITCH, "whether this came since the last step; else it is an earlier one")},
 )
 _DRIVE = _schema(
     "What the person wanted of the robot in this step",
@@ -68,6 +70,11 @@ _DRIVE = _schema(
     stop=_described(_SWITCH, "emergency stop"),
     age=_described(_NUMBER, "how old the input was"),
     fault=_described(_TEXT, "why the input could not be trusted"),
+    camera_xyzw={
+        "type": ["array", "null"],
+        "items": _NUMBER,
+        "description": "orientation of the picture the person saw, of which a frame `camera` is meant; x right, y down",
+    },
 )
 
 SCHEMAS: dict[str, tuple[str, bytes]] = {
@@ -106,7 +113,12 @@ SCHEMAS: dict[str, tuple[str, bytes]] = {
     ),
     UTTERANCE: (
         "showtell.Utterance",
-        _schema("A sentence about this demo", text=_TEXT, when=_described(_TEXT, "before, during or after the demo")),
+        _schema(
+            "A sentence about this demo",
+            text=_TEXT,
+            when=_described(_TEXT, "before, during or after the demo"),
+            optional={"language": _described(_TEXT, "tag of its language (BCP 47)")},
+        ),
     ),
     DRIVE: ("showtell.Drive", _DRIVE),
     ARMS: (

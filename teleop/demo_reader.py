@@ -169,8 +169,11 @@ def _states(moments: list[int], joints: list[dict[str, Any]], messages: _Message
 
 
 def _inputs(messages: _Messages, topic: str, steps: list[int]) -> InputTrack:
+    kept = bool(steps) and all("arrived" in messages[topic][step] for step in steps)
     return InputTrack(
-        axes=_column(messages, topic, steps, "axes", (4,)), buttons=_column(messages, topic, steps, "buttons", (17,))
+        axes=_column(messages, topic, steps, "axes", (4,)),
+        buttons=_column(messages, topic, steps, "buttons", (17,)),
+        arrived=_frozen([messages[topic][step]["arrived"] for step in steps], np.bool_) if kept else None,
     )
 
 
@@ -237,7 +240,8 @@ def _prelude(messages: _Messages) -> InputTrack | DriveTrack | None:
 
 def _sentence(record: Record) -> Sentence:
     content = record.content
-    return Sentence(str(content["text"]), record.step, content.get("when", "before"))
+    said = content.get("when", "before")
+    return Sentence(str(content["text"]), record.step, said, str(content.get("language", "")))
 
 
 def _event(record: Record) -> Event:

@@ -84,6 +84,11 @@ class DiskWriter:
             self._queue.put(None)
 
     @property
+    def whole(self) -> int:
+        """Bytes of the whole blocks that the file holds."""
+        return self._whole
+
+    @property
     def closed(self) -> bool:
         """Whether everything is written, or writing failed, and the file is closed."""
         return self._closed.is_set()

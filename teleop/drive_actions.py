@@ -28,7 +28,7 @@ def act(
         The new state, not armed when something else will move from now on; and what happened.
     """
     fired = presses.fired
-    new = replace(state, held=presses.pressed, spent=presses.spent)
+    new = replace(state, held=presses.pressed, spent=presses.spent, seen=True)
     if "stop" in presses.held:
         return replace(new, stopped=True, armed=False), () if state.stopped else (DriveEvent("stop"),)
     if state.stopped and "release" in fired:

@@ -42,6 +42,8 @@ class DriveCommand:
         stop: Emergency stop: brakes as hard as the limits allow, and stays until it is released.
         age: How old the input is [s]; above `MAX_AGE` it counts as lost.
         fault: Why the input cannot be trusted; empty when it can.
+        camera_xyzw: Orientation in the world of the picture that the person sees (optical frame: x right, y down, z
+            forward), for wishes along its axes; None takes the camera that the servo knows of.
     """
 
     arms: Mapping[str, ArmWish] = field(default_factory=dict)
@@ -51,6 +53,7 @@ class DriveCommand:
     stop: bool = False
     age: float = 0.0
     fault: str = ""
+    camera_xyzw: tuple[float, float, float, float] | None = None
 
     def __post_init__(self) -> None:
         """Freeze the wishes."""

@@ -75,6 +75,7 @@ class DriveMapping:
         self.chords = settings.buttons.chords()
         self._check()
         self._reader = ButtonReader(self.chords)
+        self._acting = frozenset(name for chords in self.chords.values() for chord in chords for name in chord)
         self.state = self.start()
         self._events: list[DriveEvent] = []
 
@@ -118,8 +119,12 @@ class DriveMapping:
             send is named in the command's fault.
         """
         if fault := gamepad.fault():
-            return _mistrusted(state), DriveCommand(stop=state.stopped, fault=fault), ()
-        presses = self._reader.read(gamepad, state.held, state.spent)
+            # Even a gamepad that cannot be trusted with motion is heard when its stop is pressed.
+            stop = "stop" in self._reader.read(gamepad, frozenset(), frozenset()).held
+            told = (DriveEvent("stop"),) if stop and not state.stopped else ()
+            state = _mistrusted(replace(state, stopped=state.stopped or stop))
+            return state, DriveCommand(stop=state.stopped, fault=fault), told
+        presses = self._presses(state, gamepad)
         new, events = act(state, presses, self.arms, self.settings.frames)
         wishes = {name: self._value(total, gamepad, presses.spent) for name, total in self._moving(new).items()}
         fault = ""
@@ -152,7 +157,7 @@ class DriveMapping:
         """
         age = max(now - reading.timestamp, 0.0)
         if reading.fault or not reading.connected:
-            self.state = _mistrusted(self.state)
+            self.distrust()
             fault = reading.fault or f"{reading.name} is not connected"
             return DriveCommand(stop=self.state.stopped, age=age, fault=fault)
         return replace(self.command(reading.gamepad), age=age)
@@ -163,6 +168,10 @@ class DriveMapping:
         return events
 
     # What others than the gamepad may change: the page's buttons
+
+    def distrust(self) -> None:
+        """The input is lost: what is pressed or deflected when it comes back does nothing until it was let go."""
+        self.state = _mistrusted(self.state)
 
     def stop(self) -> None:
         """Stop until `release`."""
@@ -194,7 +203,18 @@ class DriveMapping:
             raise MappingError(f"the speed ratio is {ratio!r}, allowed 0..1")
         self.state = replace(self.state, speed_ratio=float(ratio))
 
-    # Sticks
+    # Buttons and sticks
+
+    def _presses(self, state: DriveState, gamepad: GamepadState) -> Presses:
+        """What the buttons say.
+
+        At the first look after a fault nobody has pressed what is down, save the stop: a button that was down already,
+        perhaps under another hand, must not release the emergency stop or move the fingers.
+        """
+        if state.seen:
+            return self._reader.read(gamepad, state.held, state.spent)
+        found = self._reader.read(gamepad, frozenset(), frozenset())
+        return Presses(found.pressed, found.pressed & self._acting, found.held & {"stop"}, frozenset())
 
     def _moving(self, state: DriveState) -> dict[str, Sum]:
         """The sums of controls that move something now."""
@@ -267,8 +287,8 @@ class DriveMapping:
 
 
 def _mistrusted(state: DriveState) -> DriveState:
-    """After a fault: let go of the sticks first; and buttons that are up when it is over have not been released."""
-    return replace(state, armed=False, spent=state.held)
+    """After a fault: let go of sticks and buttons first; buttons that are up when it is over were not released."""
+    return replace(state, armed=False, seen=False)
 
 
 def _gripper(presses: Presses) -> GripperWish:

@@ -57,6 +57,7 @@ class DriveState:
             they move was changed; until then they move nothing, so that nothing starts by surprise.
         held: Buttons that were pressed at the last look.
         spent: Of these, those that took part in a chord; they do nothing alone when they are released.
+        seen: Whether `held` and `spent` are of the last look; False since the input was lost, until it is back.
     """
 
     arms: tuple[str, ...]
@@ -69,3 +70,4 @@ class DriveState:
     armed: bool = False
     held: frozenset[str] = frozenset()
     spent: frozenset[str] = frozenset()
+    seen: bool = True

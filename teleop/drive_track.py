@@ -91,6 +91,7 @@ def command_to_message(command: DriveCommand) -> dict[str, Any]:
         "stop": command.stop,
         "age": command.age,
         "fault": command.fault,
+        "camera_xyzw": command.camera_xyzw,
     }
 
 
@@ -112,6 +113,7 @@ def command_from_message(message: dict[str, Any]) -> DriveCommand:
             jog=None if jog is None else (int(jog[0]), _number(jog[1])),
         )
     speed, turn = _numbers(message["base"])
+    camera = message.get("camera_xyzw")  # demos of earlier versions have none
     return DriveCommand(
         arms=arms,
         base=(speed, turn),
@@ -120,11 +122,17 @@ def command_from_message(message: dict[str, Any]) -> DriveCommand:
         stop=bool(message["stop"]),
         age=_number(message["age"]),
         fault=str(message["fault"]),
+        camera_xyzw=None if camera is None else _quaternion(camera),
     )
 
 
 def _number(value: Any) -> float:
     return float("nan") if value is None else float(value)
+
+
+def _quaternion(values: Any) -> tuple[float, float, float, float]:
+    x, y, z, w = _numbers(values)
+    return x, y, z, w
 
 
 def _numbers(values: Any) -> tuple[float, ...]:

@@ -74,16 +74,29 @@ def openings_of(result: DriveOutcome) -> tuple[float, ...]:
 class EventWatch:
     """Compares each control step with the one before."""
 
-    def __init__(self) -> None:
-        """Start with nothing wrong."""
+    def __init__(self, rate: int) -> None:
+        """Start with nothing wrong.
+
+        Args:
+            rate: Control steps a second.
+        """
+        self._rate = rate
         self._safety = ("ok", "")
         self._since = -SAFETY_GAP
         self._stop = False
         self._lost = ""
         self._openings: tuple[float, ...] = ()
+        self._heard: int | None = None
+        """Step of the last input that could be trusted."""
+        self._brakes: int | None = None
+        """Step at which braking began, while what was moving is not at rest yet."""
+        self._told_to_stop = False
+        self._moved = False
 
-    def after(self, step: int, command: DriveCommand, result: DriveOutcome) -> Iterator[tuple[EventKind, str, str]]:
-        """Kind, text and arm of what happened in this step."""
+    def after(
+        self, step: int, command: DriveCommand, result: DriveOutcome, *, arrived: bool = True
+    ) -> Iterator[tuple[EventKind, str, str]]:
+        """Kind, text and arm of what happened in this step; `arrived` says whether input came since the last."""
         if command.stop != self._stop:
             self._stop = command.stop
             yield "stop", "emergency stop" if command.stop else "emergency stop released", ""
@@ -91,8 +104,10 @@ class EventWatch:
         if lost != self._lost:
             # A fault that names a value changes with it: only the change between good and bad is an event.
             if bool(lost) != bool(self._lost):
-                yield "device", f"lost: {lost}" if lost else "found again", ""
+                yield "device", f"lost: {lost}{self._since_heard(step)}" if lost else "found again", ""
             self._lost = lost
+        if arrived and not lost:
+            self._heard = step
         safety = (str(result.state), str(result.reason) if result.state != "ok" else "")
         told = safety[0] == "stopped" and self._safety[0] != "stopped"
         if safety != self._safety and (told or step - self._since >= SAFETY_GAP):
@@ -104,3 +119,21 @@ class EventWatch:
                 if before != now:
                     yield "gripper", "closes" if now < before else "opens", name
             self._openings = openings
+        yield from self._rest(step, bool(lost) or command.stop or not command.enabled, result)
+
+    def _since_heard(self, step: int) -> str:
+        if self._heard is None:
+            return ""
+        return f"; the last input came {1000 * (step - self._heard) / self._rate:.0f} ms before"
+
+    def _rest(self, step: int, told_to_stop: bool, result: DriveOutcome) -> Iterator[tuple[EventKind, str, str]]:
+        """Say when everything is at rest that was moving when it was told to stop."""
+        if told_to_stop and not self._told_to_stop and self._moved:
+            self._brakes = step
+        elif not told_to_stop:
+            self._brakes = None
+        self._told_to_stop = told_to_stop
+        self._moved = any(map(any, (result.joint_velocity, result.base_twist)))
+        if self._brakes is not None and not self._moved:
+            yield "safety", f"at rest {1000 * (step + 1 - self._brakes) / self._rate:.0f} ms after braking began", ""
+            self._brakes = None

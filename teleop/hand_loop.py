@@ -8,6 +8,7 @@ from pathlib import Path
 from robots.errors import ShowtellError
 
 from .devices import Device
+from .input_age import InputAge
 from .loop_deck import Deck
 from .loop_driver import DriveReport, OperatorInput
 from .loop_pace import Pace
@@ -44,6 +45,7 @@ def drive_by_hand(
     *,
     seconds: float | None = None,
     clock: Callable[[], float] = time.monotonic,
+    pace: Pace | None = None,
 ) -> list[Path]:
     """Drive until Ctrl-C or for some time; what is being recorded then is kept.
 
@@ -55,20 +57,24 @@ def drive_by_hand(
         device: What the person drives with.
         tell: Called ten times a second and when something happened.
         seconds: How long [s]; None goes on until Ctrl-C.
-        clock: The time [s] on the device's clock.
+        clock: The time [s] on the device's clock; asked once a control step.
+        pace: When steps are due; None takes real time.
 
     Returns:
         The demos that were recorded and kept, in order.
     """
-    pace = Pace(deck.world.DT)
+    pace, ages = pace or Pace(deck.world.DT), InputAge(deck.world.DT)
     notice, step = "", 0
     before = set(deck.demos())
     try:
         while seconds is None or step * deck.world.DT < seconds:
             now = clock()
             reading = device.poll(now)
+            age, arrived = ages.of(reading.timestamp, now)
             fault = reading.fault or ("" if reading.connected else "no device: plug it in")
-            wish = OperatorInput(reading.gamepad, True, max(now - reading.timestamp, 0.0), fault)
+            if not fault and ages.is_lost(age):
+                fault = f"the {reading.name} is silent"
+            wish = OperatorInput(reading.gamepad, True, age, fault, arrived and not fault)
             report, told = deck.step(wish)
             for event in deck.driver.mapping.take_events():
                 changes = deck.changes

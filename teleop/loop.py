@@ -1,7 +1,8 @@
 """The control loop: 240 steps a second in a process of its own, so that no page, picture or network delays it.
 
 It takes input and wishes from the server through a `Channel`, and gives states and poses back without ever waiting.
-Input that is older than `MAX_AGE` is not followed: the robot brakes, and moves again only after the sticks were let go.
+Input that gets older than `MAX_AGE`, by the clock or in simulated time, is not followed: the robot brakes, and moves
+again only after the sticks were let go.
 """
 
 import time
@@ -15,6 +16,7 @@ from robots.errors import ShowtellError
 
 from .drive_command import MAX_AGE
 from .gamepad import RESTING, GamepadState
+from .input_age import InputAge
 from .loop_channel import Channel
 from .loop_deck import Deck
 from .loop_driver import DriveReport, OperatorInput, controls_of
@@ -40,6 +42,7 @@ class ControlLoop:
         self._deck = deck
         self._channel = channel
         self._pace = Pace(deck.world.DT)
+        self._age = InputAge(deck.world.DT)
         self._steps = 0
         self._input: dict[str, Any] | None = None
         self._gamepad = RESTING
@@ -50,7 +53,7 @@ class ControlLoop:
         self._latencies: deque[float] = deque(maxlen=_KEPT_LATENCIES)
         self._shown: tuple[object, ...] = ()
         self._report = DriveReport("stopped", self._lost)
-        self._demos = deck.demos()
+        self._mode, self._demos = deck.mode, deck.demos()
         self._show_world()
 
     def run(self) -> None:
@@ -103,6 +106,8 @@ class ControlLoop:
             self._gamepad = GamepadState(tuple(message["axes"]), tuple(message["buttons"]))
             self._input, self._fresh, self._lost = message, True, ""
         elif kind == "lost":
+            if self._input is not None:
+                self._notice("warning", f"{message['reason']}: the robot stops")
             self._lost, self._input, self._gamepad = message["reason"], None, RESTING
         elif kind in ("stop", "release"):
             mapping = self._deck.driver.mapping
@@ -116,15 +121,18 @@ class ControlLoop:
         """What the operator wants, or why that is not known."""
         last = self._input
         if last is None:
-            return OperatorInput(fault=self._lost or NO_OPERATOR)
-        age = now - last["received"] + last["late"]
+            return OperatorInput(fault=self._lost or NO_OPERATOR, arrived=False)
+        age, arrived = self._age.of(last["received"] - last["late"], now)
         fault = ""
-        if age > MAX_AGE:
+        if self._age.is_lost(age):
             fault = SILENT
             if self._lost != SILENT:
                 self._lost = SILENT
                 self._notice("warning", f"{SILENT} for {1000 * MAX_AGE:.0f} ms: the robot stops")
-        return OperatorInput(self._gamepad, last["enabled"], age, fault)
+        camera = last.get("camera")
+        return OperatorInput(
+            self._gamepad, last["enabled"], age, fault, arrived, None if camera is None else tuple(camera)
+        )
 
     def _set(self, message: dict[str, Any]) -> None:
         """Choose an arm or a speed."""
@@ -169,7 +177,8 @@ class ControlLoop:
         self._try(lambda: self._deck.press(event))
 
     def _deck_changed(self, level: str, told: str) -> None:
-        self._demos = self._deck.demos()
+        if self._deck.mode != self._mode:  # only then the list may be another one, and to look takes time
+            self._mode, self._demos = self._deck.mode, self._deck.demos()
         self._notice(level, told)
         if self._deck.changes != self._stream.number:
             self._report = DriveReport("stopped", "the scene starts")

@@ -89,9 +89,8 @@ class Deck:
             return self._play(self._player)
         recorder = self._recording.recorder
         report = self.driver.step(wish, recorder)
-        if recorder is None:
-            return report, ""
-        return report, self._recording.poll() or (self.stop() if recorder.seconds >= LONGEST else "")
+        ends = recorder is not None and recorder.seconds >= LONGEST
+        return report, self._recording.poll() or (self.stop() if ends else "")
 
     def record(self) -> str:
         """Set the scene up anew and record from its first step.
@@ -136,7 +135,7 @@ class Deck:
         """Keep the demo."""
         self._needs("review", "keep")
         said, self._said = self._said, 0
-        path = self._recording.keep()
+        path = self._recording.keep(wait=False)
         return f"kept {path.name} with {said} sentence{'' if said == 1 else 's'}"
 
     def discard(self) -> str:
@@ -160,6 +159,7 @@ class Deck:
         self._needs("idle", "replay")
         if name not in self.demos():
             raise TeleopError(f"there is no demo {name!r} in {self._folder}: choose one of the list")
+        self._recording.settle()
         self._player = DemoPlayer(load_demo(self._folder / name))
         self.changes += 1
         return f"replaying {name}: its inputs are simulated afresh"

@@ -70,12 +70,16 @@ class OperatorInput:
         enabled: Whether motion is held on; False brakes smoothly to rest.
         age: How old this is [s].
         fault: Why it cannot be trusted; empty when it can.
+        arrived: Whether it came since the last control step; otherwise it is an earlier one that still counts.
+        camera_xyzw: Orientation in the world of the picture that the person sees, or None where that is not known.
     """
 
     gamepad: GamepadState = RESTING
     enabled: bool = True
     age: float = 0.0
     fault: str = ""
+    arrived: bool = True
+    camera_xyzw: tuple[float, float, float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,17 +165,19 @@ class RobotDriver:
         """Do one control step of `World.DT`, and record it."""
         mapping = self.mapping
         if wish.fault:
-            state = mapping.state = replace(mapping.state, armed=False)
-            command = DriveCommand(stop=state.stopped, age=wish.age, fault=wish.fault)
+            mapping.distrust()
+            command = DriveCommand(stop=mapping.state.stopped, age=wish.age, fault=wish.fault)
         else:
             command = replace(mapping.command(wish.gamepad), age=wish.age)
+            if any(each.frame == "camera" for each in command.arms.values()):
+                command = replace(command, camera_xyzw=wish.camera_xyzw)
             if not wish.enabled:
                 command = replace(command, enabled=False)
         if recorder is not None and self._steps % STATE_EVERY == 0:
             recorder.state(self._steps, self.world.state())
         result = self._session.step(command)
         if recorder is not None:
-            recorder.drive(self._steps, wish.gamepad, command, result)
+            recorder.drive(self._steps, wish.gamepad, command, result, arrived=wish.arrived)
         self._steps += 1
         return report_of(result, command.fault if not command.stop else "")
 

@@ -32,6 +32,7 @@ from .demo_format import (
     OBJECTS,
     OUTCOME,
     OUTCOMES,
+    PRELUDE_DRIVE,
     UNITS,
     UTTERANCE,
     log_time,
@@ -95,7 +96,9 @@ class Recorder:
         self._controlled = False
         self._closed = False
         self._chunk_began = 0
-        self._watch = EventWatch()
+        self._chunks: list[tuple[int, int]] = []
+        """Where each chunk ends in the file, and the step at which it was closed."""
+        self._watch = EventWatch(rate)
         self._moves = robot is not None and robot.drive is not None
         self._arms = tuple(robot.arms) if robot is not None else ()
         # Wall-clock time that never jumps back: the clock's at the start, then that of a steady one.
@@ -147,9 +150,10 @@ class Recorder:
         """Why recording ended by itself, in one line; empty while all is well."""
         if not self._disk.failed:
             return ""
+        kept = max((step for end, step in self._chunks if end <= self._disk.whole), default=0)
         return (
             f"{self.path}: cannot be written on: {self._disk.failed}; what was recorded until about "
-            f"{self._step / self._rate:.1f} s is kept"
+            f"{kept / self._rate:.1f} s is kept"
         )
 
     @property
@@ -162,16 +166,25 @@ class Recorder:
         """Whether the file is written to its end and closed, or recording failed."""
         return self._disk.closed
 
-    def utterance(self, text: str, when: When | None = None) -> None:
+    def utterance(self, text: str, when: When | None = None, language: str = "") -> None:
         """Record a sentence about the demo, at the present step.
 
         Args:
             text: The sentence.
             when: Before, during or after the demo; None takes before until control begins, then during.
+            language: Tag of its language (BCP 47), where it is known.
         """
         said = when or ("during" if self._controlled else "before")
-        self._write(UTTERANCE, self._step, {"step": self._step, "text": text, "when": said})
+        message: dict[str, object] = {"step": self._step, "text": text, "when": said}
+        self._write(UTTERANCE, self._step, message | ({"language": language} if language else {}))
         self._flush()
+
+    def prelude(self, step: int, command: DriveCommand) -> None:
+        """Record what was wanted in a step before the demo's first: a replay brings the scene to its start with it.
+
+        The demo's own steps and states then count from its first step, and its `details` say so under `trim`.
+        """
+        self._write(PRELUDE_DRIVE, step, {"step": step, **command_to_message(command)})
 
     def event(self, kind: EventKind, text: str, arm: str = "") -> None:
         """Record that something happened, at the present step. `drive` notices most by itself.
@@ -212,7 +225,9 @@ class Recorder:
         )
         self._end_step(step)
 
-    def drive(self, step: int, gamepad: GamepadState, command: DriveCommand, result: DriveOutcome) -> None:
+    def drive(
+        self, step: int, gamepad: GamepadState, command: DriveCommand, result: DriveOutcome, *, arrived: bool = True
+    ) -> None:
         """Record one control step of a whole robot, and in words what changed since the last one.
 
         Args:
@@ -220,12 +235,14 @@ class Recorder:
             gamepad: What the device said; resting where it is none.
             command: What was wanted: a replay gives this to the servo.
             result: What the servo made of it.
+            arrived: Whether the device said it since the last step; otherwise it said so earlier.
         """
         self._begin_step(step)
         openings = openings_of(result)
         arms = list(result.arms.values())
         first = arms[0]
-        self._write(GAMEPAD, step, {"step": step, "axes": gamepad.axes, "buttons": gamepad.buttons})
+        said = {"step": step, "axes": gamepad.axes, "buttons": gamepad.buttons, "arrived": arrived}
+        self._write(GAMEPAD, step, said)
         self._write(DRIVE, step, {"step": step, **command_to_message(command)})
         self._write(
             COMMAND,
@@ -256,7 +273,7 @@ class Recorder:
                 "reason": str(result.reason),
             },
         )
-        for kind, text, arm in self._watch.after(step, command, result):
+        for kind, text, arm in self._watch.after(step, command, result, arrived=arrived):
             self.event(kind, text, arm)
         self._end_step(step)
 
@@ -297,6 +314,10 @@ class Recorder:
             )
         if not self._controlled:
             self._flush()  # from here on the file can be read, whatever happens
+
+    def flush(self) -> None:
+        """Hand what was recorded so far to the disk; returns at once."""
+        self._flush()
 
     def finish(self) -> None:
         """Write the index and let the disk finish; returns at once. `finished` tells when it is done."""
@@ -375,6 +396,7 @@ class Recorder:
         """Close the chunk and hand it to the disk."""
         if not self._closed and not self._disk.failed:
             self._writer.flush()
+            self._chunks.append((self._disk.tell(), self._step))
         self._chunk_began = 0
 
 

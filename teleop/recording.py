@@ -10,7 +10,6 @@ from .demo_events import OutcomeKind
 from .demo_file import SUFFIX
 from .errors import TeleopError
 from .recorder import Recorder
-from .repair import add_utterances, label_demo
 from .trim import trim_demo
 
 RecordingState = Literal["idle", "recording", "stopped"]
@@ -22,8 +21,9 @@ class Recording:
     """The recordings of one folder, one at a time: idle, recording, stopped (to be kept or discarded), idle.
 
     A file gets the next free number and never replaces another. Each demo starts with its scene as new, so that it
-    can be simulated afresh; `begin` sees to that. No method waits for the disk save `keep`, `label` and `say` after
-    the end, which are called when the arm rests.
+    can be simulated afresh; `begin` sees to that. The file stays open until the demo is kept or discarded: what is said
+    after the end goes to its end, on the way on which everything goes to the disk, and the control loop, in which all
+    of this is called, waits for nothing. Only `keep` may wait, where it is told to.
 
     Attributes:
         folder: Where the demos are.
@@ -46,6 +46,8 @@ class Recording:
         self._name = name
         self._recorder: Recorder | None = None
         self._discarded: Recorder | None = None
+        self._kept: Recorder | None = None
+        """Kept, and perhaps not whole on the disk yet."""
         self._waiting: list[str] = []
         self._said_before: list[str] = []
         self._marks: list[float] = []
@@ -81,28 +83,34 @@ class Recording:
 
         When the disk failed, the recording is over, what was written is kept, and control goes on.
         """
-        if self.state != "recording" or not (told := self.failed):
+        if self._kept is not None and self._kept.finished:
+            kept, self._kept = self._kept, None
+            if kept.failed:
+                return kept.failed
+        if self._recorder is None or self.state == "idle" or not (told := self.failed):
             return ""
-        self.stop()
+        self._recorder.finish()
         self._recorder, self.state = None, "idle"
         return told
+
+    def settle(self) -> None:
+        """Wait until the demo that was kept last is whole on the disk; `poll` tells if it failed."""
+        if self._kept is not None:
+            self._kept.wait()
 
     def say(self, text: str) -> None:
         """Add a sentence: before a recording (it goes with the next), during it, or after it.
 
         Raises:
             TeleopError: Nothing was said.
-            DemoError: The finished demo cannot be written anew; it is then as it was.
         """
         text = " ".join(text.split())
         if not text:
             raise TeleopError("there is nothing to add: a sentence that describes the demo is needed")
-        if self.state == "recording" and self._recorder is not None:
-            self._recorder.utterance(text)
-        elif self.state == "stopped":
-            add_utterances(self._written(), [text])
-        else:
+        if self._recorder is None:
             self._waiting.append(text)
+        else:
+            self._recorder.utterance(text, "after" if self.state == "stopped" else None)
 
     def mark(self) -> float:
         """Mark where the piece that matters starts and, at the second call, ends; `keep` then makes a trimmed copy.
@@ -119,7 +127,9 @@ class Recording:
         return seconds
 
     def stop(self, outcome: OutcomeKind | None = None, note: str = "") -> Path:
-        """End the demo; it then waits to be kept or discarded, and is safe meanwhile. Does not wait for the disk.
+        """End the demo; it then waits to be kept or discarded, and is safe meanwhile.
+
+        A process that is killed meanwhile leaves a demo that has all its steps and is marked as ending early.
 
         Args:
             outcome: How it ended, if that is known already.
@@ -133,7 +143,8 @@ class Recording:
             raise TeleopError("nothing is being recorded")
         if outcome is not None:
             self._recorder.outcome(outcome, note)
-        self._recorder.finish()
+        self._recorder.event("record", "ended")
+        self._recorder.flush()
         self.state = "stopped"
         return self.path
 
@@ -142,16 +153,20 @@ class Recording:
 
         Raises:
             TeleopError: There is no demo to label.
-            DemoError: The finished demo cannot be written anew; it is then as it was.
+            DemoError: There is no such outcome.
         """
-        if self.state == "recording" and self._recorder is not None:
-            self._recorder.outcome(outcome, note)
-        else:
+        if self._recorder is None:
             self._need("stopped", "label")
-            label_demo(self._written(), outcome, note)
+        else:
+            self._recorder.outcome(outcome, note)
 
-    def keep(self, outcome: OutcomeKind | None = None, note: str = "") -> Path:
+    def keep(self, outcome: OutcomeKind | None = None, note: str = "", *, wait: bool = True) -> Path:
         """Keep the demo, success or failure; with a trimmed copy beside it where two moments were marked.
+
+        Args:
+            outcome: How it ended, if that is known now.
+            note: Why.
+            wait: Return when it is on the disk. Without, `poll` tells if the disk fails; marks need it.
 
         Raises:
             TeleopError: There is no demo to keep.
@@ -166,6 +181,10 @@ class Recording:
         if recorder is None or path is None:
             raise TeleopError("there is no demo")
         self._recorder, self.state = None, "idle"  # whatever fails from here on, the next demo can be recorded
+        recorder.finish()
+        if not wait:
+            self._kept = recorder
+            return path
         recorder.close()
         if len(self._marks) == 2:
             start, end = self._marks
@@ -184,6 +203,8 @@ class Recording:
         if self.path is not None:
             with suppress(FileNotFoundError):
                 os.replace(self.path, self.folder / TRASH)
+        if self._recorder is not None:
+            self._recorder.finish()
         self._discarded, self._recorder, self.state = self._recorder, None, "idle"
 
     def restore(self) -> Path:
@@ -213,23 +234,13 @@ class Recording:
 
     def close(self) -> None:
         """Finish what is being recorded; it is kept."""
-        if self.state == "recording" and self._recorder is not None:
-            self._recorder.event("record", "ended with the program")
-            self._recorder.finish()
         if self._recorder is not None:
+            if self.state == "recording":
+                self._recorder.event("record", "ended with the program")
+            self._recorder.finish()
             self._recorder.wait()
+        self.settle()
         self._recorder, self.state = None, "idle"
-
-    def _written(self) -> Path:
-        """The demo, when it is on the disk.
-
-        Raises:
-            DemoError: The disk failed.
-        """
-        if self._recorder is None or self.path is None:
-            raise TeleopError("there is no demo")
-        self._recorder.close()
-        return self.path
 
     def _free(self) -> Path:
         """The next number after the last in use."""

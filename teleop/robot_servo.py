@@ -1,13 +1,13 @@
 """The servo of a whole robot: all arms and the base, never beyond a limit, never into anything.
 
-A step has four parts. Each arm's wish becomes joint velocities (`ArmServo`). Together with the base's they are brought
-to what distances and position limits allow, by the nearest motion that approaches nothing too fast (`ServoGuard`,
-`project`). Speeds change on the fastest way within acceleration and jerk limits (`ServoBrakes`). And the step is taken
-only if braking from where it leads ends before every limit and every thing; else what is concerned brakes now.
+A step has four parts. Each arm's wish becomes joint velocities that slow down early for what lies ahead, so that
+straight lines stay straight (`ArmServo`). Together with the base's they are brought to what distances allow, by the
+nearest motion that approaches nothing too fast (`SpeedLimiter`, `ServoGuard`). Speeds change within acceleration and
+jerk limits (`ServoBrakes`). And the step is taken only if braking from where it leads ends before every limit and every
+thing; else what is concerned brakes now.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
 
 import numpy as np
 
@@ -22,16 +22,14 @@ from .drive_command import ArmWish, DriveCommand
 from .errors import ServoError
 from .servo_brakes import ServoBrakes, State
 from .servo_camera import body_axes, camera_axes_in_base
-from .servo_guard import Dampers, IntArray, ServoGuard
+from .servo_guard import IntArray, ServoGuard
 from .servo_input import why_to_stop
-from .servo_projection import project
-from .servo_reason import STOPPING, DriveReason
-from .servo_result import ArmResult, RobotServoResult, ServoView
+from .servo_notes import ServoNotes
+from .servo_outcome import outcome
+from .servo_reason import DriveReason
+from .servo_result import RobotServoResult, ServoView
+from .speed_limiter import SpeedLimiter, note_pair
 
-AGREE_WITHIN = 2e-3
-"""Asked and executed twists that differ by less are the same [m/s, rad/s]: what holds the tool on its line is less."""
-REST = 1e-4
-"""Slower than this is standing still [m/s or rad/s]."""
 _NOTHING: Mapping[str, Sequence[Obstacle]] = {}
 
 
@@ -58,12 +56,14 @@ class RobotServo:
         self.robot = robot
         self._brakes = ServoBrakes(robot)
         self._arms = {name: ArmServo(robot, arm) for name, arm in robot.arms.items()}
+        self._limiter = SpeedLimiter(robot, self._brakes, self._arms)
         self._slices = {name: robot.slice_of(name) for name in robot.arms}
         self._n, self._d = len(robot.joint_names), len(self._brakes.names)
         self._camera = camera_axes_in_base(robot)
         self._state: State | None = None
         self._openings: dict[str, float] = {}
         self._guard = ServoGuard(robot, obstacles, held)
+        self._warm_up()
 
     def reset(self) -> None:
         """Forget what was commanded: the next step starts from measured speeds and openings."""
@@ -109,17 +109,26 @@ class RobotServo:
         if (told := self._widest(view)) != widest:
             self._guard.look(q, told, base)
         intents = self._intents(command if stop is DriveReason.NONE else DriveCommand(), q, turn, view, dt)
-        wanted = self._wanted(intents, command, stop)
-        reasons = {name: (each.reason, each.detail) for name, each in intents.items()} | {
-            "base": (DriveReason.NONE, "")
-        }
-        reasons |= {name: (DriveReason.COLLISION, "no room for the fingers to open") for name in cramped}
-        target = self._limited(wanted, intents, q, reasons) if wanted.any() else wanted
-        velocity = self._advance(target, stop is DriveReason.NONE, q, base, dt, reasons)
-        if stop is DriveReason.NONE:
-            for arm in self._arms.values():
-                arm.proceed(dt)
-        return self._result(command, stop, why, intents, velocity, turn, reasons)
+        notes = ServoNotes(intents)
+        for name, each in intents.items():
+            notes.note(name, each.reason, each.detail)
+        for name in cramped:
+            notes.note(name, DriveReason.COLLISION, "no room for the fingers to open")
+        wanted, base_asked = self._wanted(intents, command, stop)
+        target = self._limiter.limited(wanted, intents, q, self._guard, notes) if wanted.any() else wanted
+        velocity = self._advance(target, stop is DriveReason.NONE, q, base, dt, notes)
+        for name, arm in self._arms.items():
+            speeds = velocity[self._slices[name]]
+            arm.proceed(speeds, dt)
+            if stop is not DriveReason.NONE or name in notes.slid:
+                arm.follow(intents[name].jacobian, speeds)
+        return outcome(self.robot, (stop, why), base_asked, intents, velocity, turn, notes, self._openings)
+
+    def _warm_up(self) -> None:
+        """Take a step that nobody sees: what is compiled or made when it is first used would delay the first ones."""
+        going = DriveCommand({name: ArmWish((0.01,) * 6) for name in self._arms})
+        self.step(going, ServoView(self.robot.home, np.zeros(self._n)), 1e-3)
+        self.reset()
 
     def _checked(self, view: ServoView, dt: float) -> FloatArray:
         if view.q.shape != (self._n,) or not ServoBrakes.finite(view.q.tolist()):
@@ -161,106 +170,24 @@ class RobotServo:
             elif wish.frame == "base":
                 axes = np.eye(3)
             elif wish.frame == "camera":
-                axes = self._camera if view.camera_xyzw is None else turn.T @ body_axes(view.camera_xyzw)
+                seen = view.camera_xyzw if command.camera_xyzw is None else np.array(command.camera_xyzw)
+                axes = self._camera if seen is None else turn.T @ body_axes(seen)
             intents[name] = arm.intend(wish, command.speed_ratio, q[self._slices[name]], axes, dt)
         return intents
 
-    def _wanted(self, intents: Mapping[str, ArmIntent], command: DriveCommand, stop: DriveReason) -> FloatArray:
-        """Speeds that are wanted, (d,)."""
-        wanted = np.zeros(self._d)
+    def _wanted(
+        self, intents: Mapping[str, ArmIntent], command: DriveCommand, stop: DriveReason
+    ) -> tuple[FloatArray, FloatArray]:
+        """Speeds that are wanted, (d,), and what was asked of the base, (2,)."""
+        wanted, base = np.zeros(self._d), np.zeros(2)
         if stop is not DriveReason.NONE:
-            return wanted
+            return wanted, base
         for name, intent in intents.items():
             wanted[self._slices[name]] = intent.velocity
+        base = command.speed_ratio * np.array(command.base)
         if self._d > self._n:
-            wanted[self._n :] = command.speed_ratio * np.array(command.base)
-        return wanted
-
-    def _limited(
-        self,
-        wanted: FloatArray,
-        intents: Mapping[str, ArmIntent],
-        q: FloatArray,
-        reasons: dict[str, tuple[DriveReason, str]],
-    ) -> FloatArray:
-        """The nearest speeds to the wanted ones within velocity limits, distances and room to the position limits."""
-        target = self._scaled(wanted.copy(), reasons)
-        free = target != 0.0
-        inverse_weight = np.eye(self._d)
-        for name, intent in intents.items():
-            where = self._slices[name]
-            free[where] &= intent.free
-            if free[where].any():
-                free[where] = intent.free
-                inverse_weight[where, where] = intent.inverse_weight
-        columns = np.flatnonzero(free)
-        dampers = self._guard.dampers(target, self._brakes.half_times(target))
-        down, up = self._brakes.room(q)
-        ends = [(i, sign) for i in columns.tolist() for sign, room in ((-1.0, up[i]), (1.0, down[i]))
-                if room < self._brakes.velocity[i]]  # fmt: skip
-        limits = np.zeros((len(ends), self._d))
-        least = np.zeros(len(ends))
-        for row, (i, sign) in enumerate(ends):
-            limits[row, i] = sign
-            least[row] = -(up[i] if sign < 0.0 else down[i])
-        base = self._base_rows(target)
-        rows = np.concatenate((dampers.rows, limits, base[0]))
-        # Where columns are left out, what they do is nothing: their target is rest.
-        found, held = project(
-            target[columns],
-            inverse_weight[np.ix_(columns, columns)],
-            rows[:, columns],
-            np.concatenate((dampers.least, least, base[1])),
-        )
-        target[columns] = found
-        self._explain(held, dampers, ends, rows, reasons)
-        return self._scaled(target, reasons)
-
-    def _base_rows(self, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Rows that keep the base from doing more than asked, or the opposite, to make way for something."""
-        rows, least = [], []
-        for i in range(self._n, self._d):
-            if target[i]:
-                row = np.zeros(self._d)
-                row[i] = -np.sign(target[i])
-                rows += [row, -row]
-                least += [-abs(target[i]), 0.0]
-        return np.array(rows).reshape(-1, self._d), np.array(least)
-
-    def _scaled(self, speeds: FloatArray, reasons: dict[str, tuple[DriveReason, str]]) -> FloatArray:
-        """Speeds of each arm, and of the base, brought into their limits along their direction."""
-        over = np.abs(speeds) / self._brakes.velocity
-        if over.max() > 1.0:
-            for name, where in (*self._slices.items(), ("base", slice(self._n, self._d))):
-                if where.start < where.stop and (ratio := float(over[where].max())) > 1.0:
-                    speeds[where] /= ratio
-                    worst = where.start + int(np.argmax(over[where]))
-                    _note(reasons, name, DriveReason.VELOCITY_LIMIT, self._brakes.names[worst])
-        return speeds
-
-    def _explain(
-        self,
-        held: FloatArray,
-        dampers: Dampers,
-        ends: Sequence[tuple[int, float]],
-        rows: FloatArray,
-        reasons: dict[str, tuple[DriveReason, str]],
-    ) -> None:
-        """Name what holds each arm back."""
-        if not held.any():
-            return
-        count = len(dampers.pairs)
-        for name, where in (*self._slices.items(), ("base", slice(self._n, self._d))):
-            concerned = held[:count] * np.abs(rows[:count, where]).sum(axis=1)
-            if concerned.any():
-                self._note_pair(reasons, name, int(dampers.pairs[int(np.argmax(concerned))]))
-            for row, (i, _) in enumerate(ends):
-                if held[count + row] > 0.0 and where.start <= i < where.stop:
-                    _note(reasons, name, DriveReason.POSITION_LIMIT, self._brakes.names[i])
-
-    def _note_pair(self, reasons: dict[str, tuple[DriveReason, str]], name: str, pair: int) -> None:
-        reason = DriveReason.CONTACT if self._guard.contacts[pair] else DriveReason.COLLISION
-        _note(reasons, name, reason, "{} and {}".format(*self._guard.names[pair]))
+            wanted[self._n :] = base
+        return wanted, base
 
     def _advance(
         self,
@@ -269,30 +196,30 @@ class RobotServo:
         q: FloatArray,
         base: Pose,
         dt: float,
-        reasons: dict[str, tuple[DriveReason, str]],
+        notes: ServoNotes,
     ) -> FloatArray:
         """Take the step towards the target speeds from which braking is safe, or brake. Returns the speeds (d,)."""
         assert self._state is not None
         goal = target.tolist()
-        state = self._within_positions(goal, together, q, dt, reasons)
+        state = self._within_positions(goal, together, q, dt, notes)
         bad = self._offending(state, q, base, dt)
         if len(bad):
             # Only what moves the pairs that came too near brakes; where that is not enough, everything does.
             moved = self._guard.moved_by(bad)
-            for name, where in (*self._slices.items(), ("base", slice(self._n, self._d))):
+            for name, where in self._limiter.groups.items():
                 if moved[where].any():
                     moved[where] = True
                     if any(goal[where]):
-                        self._note_pair(reasons, name, int(bad[0]))
+                        note_pair(notes, self._guard, name, int(bad[0]))
             goal = np.where(moved, 0.0, target).tolist()
-            state = self._within_positions(goal, False, q, dt, reasons)
+            state = self._within_positions(goal, False, q, dt, notes)
             if any(goal) and len(self._offending(state, q, base, dt)):
                 state = self._brakes.after(self._state, [0.0] * self._d, dt)
         self._state = state
         return np.array(state[0])
 
     def _within_positions(
-        self, goal: list[float], together: bool, q: FloatArray, dt: float, reasons: dict[str, tuple[DriveReason, str]]
+        self, goal: list[float], together: bool, q: FloatArray, dt: float, notes: ServoNotes
     ) -> State:
         """The state after the period, joints that would overrun their position limits braking."""
         assert self._state is not None
@@ -310,7 +237,7 @@ class RobotServo:
             for i in over:
                 goal[i] = 0.0
                 name = next(name for name, where in self._slices.items() if where.start <= i < where.stop)
-                _note(reasons, name, DriveReason.POSITION_LIMIT, self._brakes.names[i])
+                notes.note(name, DriveReason.POSITION_LIMIT, self._brakes.names[i], slides=True)
 
     def _offending(self, state: State, q: FloatArray, base: Pose, dt: float) -> IntArray:
         """Pairs that keep a state from being taken."""
@@ -321,89 +248,3 @@ class RobotServo:
         if self._d > self._n and way[:, self._n :].any():
             bases = rolled(base, way[:, self._n :])
         return self._guard.offending(way, bases)
-
-    def _result(
-        self,
-        command: DriveCommand,
-        stop: DriveReason,
-        why: str,
-        intents: Mapping[str, ArmIntent],
-        velocity: FloatArray,
-        turn: FloatArray,
-        reasons: dict[str, tuple[DriveReason, str]],
-    ) -> RobotServoResult:
-        """Compare what is done with what was asked."""
-        arms = {}
-        lines: list[str] = []
-        moves = asks = False
-        for name, intent in intents.items():
-            where = self._slices[name]
-            executed = intent.jacobian @ velocity[where]
-            reason, detail = reasons[name]
-            if stop is not DriveReason.NONE:
-                reason, detail = stop, why
-                self._arms[name].follow(intent.jacobian, velocity[where])
-            else:
-                differs = bool(np.abs(executed - intent.asked).max() > AGREE_WITHIN)
-                if reason in _HOLDING:
-                    self._arms[name].follow(intent.jacobian, velocity[where])
-                if not differs:
-                    reason, detail = DriveReason.NONE, ""
-                elif reason is DriveReason.NONE:
-                    reason = DriveReason.ACCELERATION_LIMIT
-            asks |= bool(intent.asked.any())
-            moves |= bool(np.abs(executed).max() > REST)
-            if reason is not DriveReason.NONE:
-                lines.append(f"{name}: {reason}" + (f" ({detail})" if detail else ""))
-            arms[name] = ArmResult(_turned(turn, intent.asked), _turned(turn, executed), reason, detail)
-        base_asked, base_twist = np.zeros(2), np.zeros(2)
-        base_reason, base_detail = DriveReason.NONE, ""
-        if stop is DriveReason.NONE:
-            base_asked = command.speed_ratio * np.array(command.base)
-        if self._d > self._n:
-            base_twist = velocity[self._n :]
-        if np.abs(base_twist - base_asked).max() > AGREE_WITHIN:
-            base_reason, base_detail = reasons["base"]
-            if self._d == self._n:
-                base_reason, base_detail = DriveReason.UNREACHABLE, f"{self.robot.name} has no wheels"
-            elif base_reason is DriveReason.NONE:
-                base_reason = DriveReason.ACCELERATION_LIMIT
-            if stop is DriveReason.NONE:
-                lines.append(f"base: {base_reason}" + (f" ({base_detail})" if base_detail else ""))
-        if stop is not DriveReason.NONE:
-            base_reason, base_detail = stop, why
-            lines = [f"{stop} ({why})"]
-        asks |= bool(base_asked.any())
-        moves |= bool(np.abs(base_twist).max() > REST)
-        state: Literal["ok", "slowed", "stopped"] = "ok"
-        if lines:
-            state = "stopped" if stop in STOPPING or (asks and not moves) else "slowed"
-        return RobotServoResult(
-            velocity[: self._n],
-            base_twist,
-            base_asked,
-            self._openings,
-            arms,
-            base_reason,
-            base_detail,
-            state,
-            lines[0] if lines else "",
-        )
-
-
-_HOLDING = frozenset(
-    (DriveReason.COLLISION, DriveReason.CONTACT, DriveReason.POSITION_LIMIT, DriveReason.VELOCITY_LIMIT)
-)
-"""Reasons for which an arm goes on from what it does, not from what it was asked."""
-_ORDER = list(DriveReason)
-
-
-def _note(reasons: dict[str, tuple[DriveReason, str]], name: str, reason: DriveReason, detail: str) -> None:
-    """Keep the reason that comes first in `DriveReason`."""
-    before = reasons[name][0]
-    if before is DriveReason.NONE or _ORDER.index(reason) < _ORDER.index(before):
-        reasons[name] = reason, detail
-
-
-def _turned(rotation: FloatArray, twist: FloatArray) -> FloatArray:
-    return np.concatenate((rotation @ twist[:3], rotation @ twist[3:]))

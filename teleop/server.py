@@ -11,6 +11,7 @@ import logging
 import ssl
 import subprocess
 import time
+from collections import deque
 from collections.abc import Callable, Collection
 from http import HTTPStatus
 from typing import Any
@@ -25,7 +26,7 @@ from .errors import TeleopError
 from .loop_channel import Channel, ChannelClosedError
 from .loop_process import LoopSettings, check_started, start_loop
 from .server_client import Client, Lateness
-from .server_door import SUBPROTOCOL, Door, is_upgrade, make_door
+from .server_door import SUBPROTOCOL, Door, check_exposure, is_upgrade, make_door
 from .server_files import file_response, plain
 from .server_protocol import LONGEST_MESSAGE, Control, Input, Message, ProtocolError, Release, Stop, read_message
 
@@ -68,7 +69,11 @@ class PageServer:
             port: Port to listen at; 0 takes a free one.
             names: Other names under which the server is reached.
             context: TLS, or None.
+
+        Raises:
+            TeleopError: Other machines could reach the address, and there is no TLS.
         """
+        check_exposure(host, True, context)
         self._settings = settings
         self._host, self._port, self._names, self._context = host, port, names, context
         self.url = ""
@@ -80,6 +85,8 @@ class PageServer:
         self._process: subprocess.Popen[bytes] | None = None
         self._channel: Channel | None = None
         self._latest: dict[str, str | bytes] = {}
+        self._waiting: deque[bytes] = deque()
+        """What must reach the loop, whatever else does not fit: stops, releases and lost control, in order."""
         self._ended: asyncio.Future[None] | None = None
 
     @property
@@ -228,7 +235,7 @@ class PageServer:
 
     def _obey(self, client: Client, message: Message, now: float) -> None:
         if isinstance(message, Stop):  # anyone may stop it
-            self._send({"type": "stop"}, client)
+            self._send_surely({"type": "stop"})
         elif isinstance(message, Control):
             self._control(client, message, now)
         elif client is not self._operator:
@@ -243,14 +250,15 @@ class PageServer:
                     "axes": message.axes,
                     "buttons": message.buttons,
                     "enabled": message.enabled,
+                    "camera": message.camera,
                     "received": now,
-                    "late": client.lateness.of(stamp, now),
+                    "late": client.lateness.of(stamp, now) + message.silence / 1000,
                     "stamp": stamp,
                 },
                 None,
             )
         elif isinstance(message, Release):
-            self._send({"type": "release"}, client)
+            self._send_surely({"type": "release"})
         else:
             self._send(message.model_dump(), client)
 
@@ -267,7 +275,7 @@ class PageServer:
 
     def _let_go(self, reason: str) -> None:
         self._operator = None
-        self._send({"type": "lost", "reason": reason}, None)
+        self._send_surely({"type": "lost", "reason": reason})
 
     def _tell_control(self) -> None:
         """Tell every page who holds control."""
@@ -288,11 +296,27 @@ class PageServer:
     def _send(self, message: dict[str, object], client: Client | None) -> None:
         """Pass a message to the loop; a page whose wish does not fit is told so."""
         try:
-            sent = self._loop_channel().send(orjson.dumps(message))
+            sent = self._send_waiting() and self._loop_channel().send(orjson.dumps(message))
         except ChannelClosedError:
             return  # `_hear` sees that it ended, and ends the server
         if not sent and client is not None:
             self._refuse(client, "the control loop is busy: try again")
+
+    def _send_surely(self, message: dict[str, object]) -> None:
+        """Pass a message to the loop, now or as soon as it has room: a stop that is pressed is never lost."""
+        told = orjson.dumps(message)
+        if not self._waiting or self._waiting[-1] != told:  # once more says nothing new
+            self._waiting.append(told)
+        with contextlib.suppress(ChannelClosedError):
+            self._send_waiting()
+
+    def _send_waiting(self) -> bool:
+        """Pass on what waits, in order; says whether nothing waits any more."""
+        while self._waiting:
+            if not self._loop_channel().send(self._waiting[0]):
+                return False
+            self._waiting.popleft()
+        return True
 
     def _hear(self) -> None:
         """Pass on what the loop tells; ten times a second or more, so silence of a page is noticed here, too."""
@@ -300,6 +324,7 @@ class PageServer:
             self._let_go("the page that held control is silent")
             self._tell_control()
         try:
+            self._send_waiting()
             for message in self._loop_channel().receive():
                 self._pass_on(message)
         except ChannelClosedError:

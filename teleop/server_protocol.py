@@ -1,8 +1,9 @@
 """What the page may say: JSON messages, each checked whole before anything is done with it."""
 
+import math
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from .errors import TeleopError
 from .gamepad import AXES, BUTTONS
@@ -10,9 +11,18 @@ from .gamepad import AXES, BUTTONS
 LONGEST_MESSAGE = 64 * 1024
 """Longest message [byte]; a longer one ends the connection."""
 LONGEST_SENTENCE = 500
+
+
+def _unit(values: list[float]) -> list[float]:
+    if not abs(math.hypot(*values) - 1.0) <= 1e-3:
+        raise ValueError(f"must be a unit quaternion, got {values}")
+    return values
+
+
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Axes = Annotated[list[float], Field(min_length=len(AXES), max_length=len(AXES))]
 _Buttons = Annotated[list[float], Field(min_length=len(BUTTONS), max_length=len(BUTTONS))]
+_UnitQuaternion = Annotated[list[_Finite], Field(min_length=4, max_length=4), AfterValidator(_unit)]
 _Name = Annotated[str, Field(max_length=100)]
 
 
@@ -34,9 +44,13 @@ class Input(_Message):
     seq: Annotated[int, Field(ge=0)]
     at: _Finite
     """The page's clock when this was so [ms since 1970]."""
+    silence: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = 0.0
+    """How long the page had heard nothing of its browser then, which tells it of keys and gamepads [ms]."""
     axes: _Axes
     buttons: _Buttons
     enabled: bool
+    camera: _UnitQuaternion | None = None
+    """Orientation in the world of the picture that the page shows, xyzw: x right, y down, z into it."""
 
 
 class Set(_Message):

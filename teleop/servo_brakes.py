@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from robots import RobotModel
+from robots.ik_kernel import compiled
 from robots.pose import FloatArray
 
 from .servo import POSITION_MARGIN
@@ -51,6 +52,7 @@ class ServoBrakes:
             (each, VelocityProfile(self._acceleration[each].tolist(), self._jerk[each].tolist(), together=True))
             for each in groups
         ]
+        self._limits = self.velocity.tolist(), self._acceleration.tolist(), self._jerk.tolist()
         self._gain = 0.4 * self._jerk / self._acceleration
         self._at_rest = ((0.0,) * len(self.names),) * 2
 
@@ -69,13 +71,7 @@ class ServoBrakes:
         Towards a limit at distance r, speed is held to min(gain r, sqrt(acceleration r)): half of the acceleration
         limit at speed, and at the end a jerk of gain² v, which is well inside its limit.
         """
-        n = len(q)
-        allowed = []
-        for distance in (q - self._lower[:n], self._upper[:n] - q):
-            distance = np.maximum(distance, 0.0)
-            speed = np.minimum(self._gain[:n] * distance, np.sqrt(self._acceleration[:n] * distance))
-            allowed.append(np.append(speed, self.velocity[n:]))
-        return allowed[0], allowed[1]
+        return _room(q, self._lower, self._upper, self._gain, self._acceleration, self.velocity)
 
     def after(self, state: State, target: Sequence[float], dt: float) -> State:
         """The state after a control period on the fastest way to target speeds, each on its own."""
@@ -86,13 +82,9 @@ class ServoBrakes:
 
         A target that moves along is met exactly, as it would not be by changes that each end in steady speed.
         """
-        now, before = np.array(target), np.array(state[0])
-        rate = (now - before) / dt
-        # Half of the jerk limit, since the last period's mean acceleration lags half a period behind its end.
-        near = np.abs(rate - np.array(state[1])) <= 0.45 * dt * self._jerk
-        ends = np.abs(now + rate * np.abs(rate) / (2.0 * self._jerk)) <= self.velocity
-        if bool((near & ends & (np.abs(rate) <= self._acceleration) & (np.abs(now) <= self.velocity)).all()):
-            return tuple(target), tuple(rate.tolist())
+        rates = self._rates_along(state, target, dt)
+        if rates is not None:
+            return tuple(target), rates
         velocity: list[float] = []
         acceleration: list[float] = []
         for where, profile in self._groups:
@@ -100,6 +92,19 @@ class ServoBrakes:
             velocity += speeds
             acceleration += rates
         return _settled(velocity, acceleration)
+
+    def _rates_along(self, state: State, target: Sequence[float], dt: float) -> tuple[float, ...] | None:
+        """Accelerations with which target speeds are met at once, if they may be."""
+        rates = []
+        for speed, before, rate_before, top, most, jerk in zip(target, *state, *self._limits, strict=True):
+            rate = (speed - before) / dt
+            # Half of the jerk limit, since the last period's mean acceleration lags half a period behind its end.
+            near = abs(rate - rate_before) <= 0.45 * dt * jerk
+            ends = abs(speed + rate * abs(rate) / (2.0 * jerk)) <= top
+            if not (near and ends and abs(rate) <= most and abs(speed) <= top):
+                return None
+            rates.append(rate)
+        return tuple(rates)
 
     def overrun(self, state: State, target: Sequence[float] | None, q: Sequence[float], dt: float) -> list[int]:
         """Joints that would pass a position limit if they went on to a state and braked from there.
@@ -150,3 +155,21 @@ def _settled(velocity: Sequence[float], acceleration: Sequence[float]) -> State:
     if max(map(abs, velocity)) < ROUNDING and max(map(abs, acceleration)) < ROUNDING:
         return (0.0,) * len(velocity), (0.0,) * len(velocity)
     return tuple(velocity), tuple(acceleration)
+
+
+@compiled
+def _room(
+    q: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
+    gain: FloatArray,
+    acceleration: FloatArray,
+    velocity: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """See `ServoBrakes.room`; what has no position keeps its speed limit."""
+    down, up = velocity.copy(), velocity.copy()
+    for i in range(q.size):
+        for distance, allowed in ((q[i] - lower[i], down), (upper[i] - q[i], up)):
+            distance = max(distance, 0.0)
+            allowed[i] = min(gain[i] * distance, math.sqrt(acceleration[i] * distance))
+    return down, up

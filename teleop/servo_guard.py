@@ -12,8 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robots import CollisionModel, RobotModel
+from robots import RobotModel
+from robots.ik_kernel import compiled
 from robots.near_pairs import NearPairs
+from robots.near_shapes import RobotShapes
 from robots.obstacle import Obstacle
 from robots.pose import FloatArray, Pose
 
@@ -65,25 +67,27 @@ class ServoGuard:
     """
 
     def __init__(
-        self, robot: RobotModel, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]] | None = None
+        self,
+        robot: RobotModel,
+        obstacles: Sequence[Obstacle],
+        held: Mapping[str, Sequence[Obstacle]] | None = None,
+        own: RobotShapes | None = None,
     ) -> None:
-        """Build the geometry; takes some ten milliseconds."""
-        self._robot = robot
-        self._driven = robot.drive is not None
+        """Build the geometry; takes some ten milliseconds, and few where the robot's own shapes are given."""
         held = held or {}
         self._kind = _kind(obstacles, held)
-        self._pairs = NearPairs(CollisionModel(robot, obstacles, held))
+        self._pairs = NearPairs(robot, obstacles, held, own)
         self.names, self.contacts = self._pairs.names, self._pairs.contacts
         self._now, self._end, self._between = (self._pairs.track() for _ in range(3))
         self._stop = np.where(self.contacts, PRESS, STOP)
         self._least = np.where(self.contacts, PRESS_MOST, LEAST)
         self._floor = np.where(self.contacts, PRESS_MOST, FLOOR)
-        n = len(robot.joint_names)
-        spread = np.zeros((self._pairs.levers.shape[1], n + 2))
-        spread[:-2, :n] = np.abs(self._pairs.matrix)
-        spread[-2:, n:] = np.eye(2)
-        self._levers = np.ascontiguousarray(self._pairs.levers @ spread)[:, : n + 2 * self._driven]
+        self._dofs = len(robot.joint_names) + (2 if robot.drive is not None else 0)
         self._openings: Mapping[str, float] = {}
+
+    def rebuilt(self, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]]) -> "ServoGuard":
+        """A guard of the same robot among other things; made in little time."""
+        return ServoGuard(self._pairs.robot, obstacles, held, self._pairs.own)
 
     def watch(self, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]]) -> bool:
         """Move what is there already.
@@ -102,7 +106,6 @@ class ServoGuard:
     def look(self, q: FloatArray, openings: Mapping[str, float], base: Pose) -> None:
         """Take the posture that the next questions are about: q (n,) [rad], gaps [m], where the base stands."""
         self._q, self._openings, self._base = q, openings, base
-        self._pairs.home(base)
         self._now.move(self._pairs.positions(q, openings), base)
 
     def has_room(self, openings: Mapping[str, float]) -> bool:
@@ -120,20 +123,14 @@ class ServoGuard:
             wanted: Speeds, (dofs,): of the joints, then of a driven base.
             braking: Half of the time that each takes to brake from there, (dofs,) [s].
         """
-        moving = np.abs(wanted) > 0.0
-        slowest = float(braking[moving].max()) if moving.any() else 0.0
-        reach = np.minimum((self._levers @ np.abs(wanted)) * max(2.0 * slowest, 1.0 / STIFFEST), NEAR)
-        which = self._now.below(self._stop + reach)
+        # What a pair may approach at is at most its gain times the room; the gain is one over twice the time, or less.
+        now = self._now
+        which = now.approached(np.abs(wanted) * np.maximum(2.0 * braking, 1.0 / STIFFEST), NEAR, self._stop)
         if not len(which):
             return Dampers(np.zeros((0, len(wanted))), np.zeros(0), which)
-        rows = self._now.gradients(which)[:, : len(wanted)]
-        share = np.abs(rows * wanted)
-        times = (share @ braking) / np.maximum(share.sum(axis=1), 1e-12)
-        gains = np.clip(0.5 / np.maximum(times, 1e-3), SOFTEST, STIFFEST)
-        room = self._now.bounds[which] - self._stop[which]
-        # Where pairs are too near already, only the nearest may not come nearer: of two that squeeze a link from both
-        # sides, one would otherwise forbid the way out of the other.
-        least = -gains * (room - min(float(room.min()), 0.0))
+        rows = np.ascontiguousarray(now.gradients(which)[:, : len(wanted)])
+        room = now.bounds[which] - self._stop[which]
+        least = _least(rows, np.ascontiguousarray(wanted), braking, room)
         return Dampers(rows, least, which)
 
     def offending(self, way: FloatArray, bases: Sequence[Pose]) -> IntArray:
@@ -144,29 +141,25 @@ class ServoGuard:
             bases: Where the base stands then, m of them.
         """
         least, now, end = self._least, self._now, self._end
-        steps = np.abs(np.diff(way, axis=0, prepend=np.zeros((1, way.shape[1]))))
-        travel = self._levers @ steps.sum(axis=0)
-        end.move(self._positions(way[-1]), bases[-1])
-        near = end.below(least)
-        bad = near[self._worse(near, way[-1])] if len(near) else near
-        # Half-way, a pair is at least so far apart: what both ends say, less what lies between.
-        doubtful = (now.bounds + end.bounds - travel < 2.0 * least) & (end.bounds >= least)
-        which = np.flatnonzero(doubtful)
+        ends, which, along, sums = now.look_ahead(end, np.ascontiguousarray(way), bases, least)
+        if not len(ends) and not len(which):
+            return which
+        bad = near = end.below(least, ends)
+        if len(near):
+            bad = near[self._worse(near, way[-1])]
+        if len(ends) > len(near):
+            which = np.concatenate((which, ends[end.bounds[ends] >= least[ends]]))
         if len(which):
-            now.refine(which)
-            end.refine(which)
-            start = now.bounds[which]
-            which = which[(start + end.bounds[which] - travel[which] < 2.0 * least[which]) & (start >= least[which])]
+            start, last = now.refine(which), end.refine(which)
+            short = start + last - self._pairs.gone(sums[-1], which) < 2.0 * least[which]
+            which = which[short & (start >= least[which])]
         if len(which):
-            bad = np.concatenate((bad, which[self._passes_too_near(which, way, bases, steps)]))
+            bad = np.concatenate((bad, which[self._passes_too_near(which, along, bases, sums)]))
         return bad
 
     def moved_by(self, pairs: IntArray) -> NDArray[np.bool_]:
         """Which speeds change distances of pairs, (dofs,)."""
-        return np.asarray((self._levers[pairs] > 0.0).any(axis=0))
-
-    def _positions(self, way: FloatArray) -> FloatArray:
-        return self._pairs.positions(self._q + way[: len(self._q)], self._openings)
+        return self._pairs.moved_by(pairs)[: self._dofs]
 
     def _worse(self, near: IntArray, way: FloatArray) -> NDArray[np.bool_]:
         """Which pairs that end too near are not on their way out."""
@@ -183,16 +176,16 @@ class ServoGuard:
         return np.asarray(~fine)
 
     def _passes_too_near(
-        self, which: IntArray, way: FloatArray, bases: Sequence[Pose], steps: FloatArray
+        self, which: IntArray, along: FloatArray, bases: Sequence[Pose], sums: FloatArray
     ) -> NDArray[np.bool_]:
         """Which pairs cannot be shown to keep their distance between the looks at the way."""
         bad = np.zeros(len(which), dtype=bool)
         start = self._now.bounds[which]
-        stretches = [(0, len(way), np.arange(len(which)), start, self._end.bounds[which])]
+        stretches = [(0, len(along), np.arange(len(which)), start, self._end.bounds[which])]
         while stretches:
             first, last, some, before, after = stretches.pop()
             pairs = which[some]
-            travel = self._levers[pairs] @ steps[first:last].sum(axis=0)
+            travel = self._pairs.gone(sums[last] - sums[first], pairs)
             doubtful = before + after - travel < 2.0 * self._least[pairs]
             if not doubtful.any():
                 continue
@@ -201,10 +194,28 @@ class ServoGuard:
                 bad[some] = True
                 continue
             middle = (first + last) // 2
-            self._between.jump(self._positions(way[middle - 1]), bases[middle - 1])
+            self._between.jump(along[middle - 1], bases[middle - 1])
             between = self._between.refine(which[some])
             stretches += [(first, middle, some, before, between), (middle, last, some, between, after)]
         return bad
+
+
+@compiled
+def _least(rows: FloatArray, wanted: FloatArray, braking: FloatArray, room: FloatArray) -> FloatArray:
+    """How fast each pair's room (m,) [m] may shrink at most; see `ServoGuard.dampers` and `Dampers`."""
+    # Where pairs are too near already, only the nearest may not come nearer: of two that squeeze a link from both
+    # sides, one would otherwise forbid the way out of the other.
+    deepest = min(room.min(), 0.0)
+    least = np.empty(room.size)
+    for row in range(room.size):
+        speed = way = 0.0
+        for i in range(wanted.size):
+            share = abs(rows[row, i] * wanted[i])
+            speed += share
+            way += share * braking[i]
+        gain = 0.5 / max(way / max(speed, 1e-12), 1e-3)
+        least[row] = -min(max(gain, SOFTEST), STIFFEST) * (room[row] - deepest)
+    return least
 
 
 def _kind(obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]]) -> tuple[object, ...]:

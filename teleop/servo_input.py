@@ -11,6 +11,7 @@ from .servo_reason import DriveReason
 
 MAX_JOG = 10.0
 """Jogs above this are faults of the input, not wishes [rad/s]."""
+_UNIT_WITHIN = 1e-3
 _AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 _FRAMES = ("world", "base", "tool", "camera")
 
@@ -40,6 +41,10 @@ def fault_of(command: DriveCommand, robot: RobotModel) -> str:
     for name, value in zip(("speed of the base", "turning speed of the base"), command.base, strict=True):
         if not abs(value) <= MAX_COMMANDED_SPEED:  # NaN fails every comparison
             return f"{name} is {value!r}, allowed -{MAX_COMMANDED_SPEED}..{MAX_COMMANDED_SPEED}"
+    if command.camera_xyzw is not None:
+        size = math.hypot(*command.camera_xyzw)
+        if len(command.camera_xyzw) != 4 or not abs(size - 1.0) <= _UNIT_WITHIN:
+            return f"orientation of the picture is {command.camera_xyzw!r}, needs a unit quaternion xyzw"
     return _fault_of_wishes(command.arms, robot)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from executor.bench.recorder_child import PROGRESS, SCENES, Rig, paced
 from executor.bench.report import BenchReport
 from executor.collection import in_processes
+from robots.pose import FloatArray
 from teleop import (
     Demo,
     DemoError,
@@ -80,7 +81,8 @@ def run(
         notes.append(told)
         figures |= replayed(seed, demos, robots, folder, jobs, on_done)
     settings = {
-        "jitter": f"how late each step of a 240 Hz loop in real time begins; {seconds:g} s each, in turns of a second",
+        "jitter": f"how late each step of a 240 Hz loop in real time begins; {seconds:g} s each, in turns of a second; "
+        "pairs: with less without of turns side by side, median over the pairs, which other work hits alike",
         "killed": f"SIGKILL {KILL_WITHIN[0]:g} to {KILL_WITHIN[1]:g} s after the first step of a loop in real time",
         "full disk": f"{DISK_BYTES // 1000} kB",
         "replayed": "scripted demos, simulated afresh from their inputs in a process that did not record them",
@@ -167,24 +169,31 @@ def replayed(
 
 
 def jitter(robot: str, seed: int, seconds: float, folder: Path) -> dict[str, float | None]:
-    """How late the steps of a loop in real time begin, with and without recording, in turns of a second."""
-    late: dict[bool, list[float]] = {False: [], True: []}
+    """How late the steps of a loop in real time begin, with and without recording, in turns of a second.
+
+    The turns go without, with, with, without, so that other work on the machine hits both alike, also while it grows.
+    """
+    turns: dict[bool, list[FloatArray]] = {False: [], True: []}
     rig = Rig.of(robot, seed, reaches=1000)
     recorder = rig.record_to(folder / f"jitter_{robot}.mcap")
     turn = round(1.0 / World.DT)
     try:
         for block in range(2 * round(max(seconds, 1.0))):
-            recording = block % 2 == 1
+            recording = block % 4 in (1, 2)
             ends = rig.steps + turn
-            late[recording] += paced(partial(_go, rig, recorder if recording else None, ends))[1:]
+            late = paced(partial(_go, rig, recorder if recording else None, ends))[1:]
+            turns[recording].append(1e6 * np.array(late))
     finally:
         recorder.close()
         rig.world.close()
     figures: dict[str, float | None] = {}
     for recording, name in ((False, "without"), (True, "with")):
-        values = 1e6 * np.array(late[recording])
-        for label, value in zip(("median", "p99", "max"), np.percentile(values, [50, 99, 100]), strict=True):
+        values = np.percentile(np.concatenate(turns[recording]), [50, 99, 100])
+        for label, value in zip(("median", "p99", "max"), values, strict=True):
             figures[f"jitter.{robot}.{name}.{label}_us"] = float(value)
+    each = {key: np.array([np.percentile(turn, [50, 99]) for turn in values]) for key, values in turns.items()}
+    for label, value in zip(("median", "p99"), np.median(each[True] - each[False], axis=0), strict=True):
+        figures[f"jitter.{robot}.pairs.{label}_us"] = float(value)
     return figures
 
 

@@ -10,14 +10,14 @@ import numpy as np
 from executor.bench.pool import spread
 from executor.bench.report import BenchReport
 from executor.bench.servo_input import InputMaker
+from executor.bench.servo_lines import LONG, SPEEDS, STARTS, line_figures, straight_lines, tasks
+from executor.bench.servo_way_out import WayOut, halted
 from robots import CollisionModel, RobotModel
 from robots.kinematics import whole_model
 from robots.obstacle import Obstacle
 from robots.pose import FloatArray, Pose
 from teleop.base_servo import rolled
-from teleop.drive_command import ArmWish, DriveCommand
 from teleop.robot_servo import RobotServo
-from teleop.servo_reason import STOPPING
 from teleop.servo_result import RobotServoResult, ServoView
 from twin import SceneSpec, World
 from twin.ordering_scene import random_ordering
@@ -34,10 +34,6 @@ START = 0.008
 """Distance that starts keep [m]."""
 LOOK_EVERY = 4
 """Steps between two independent looks at all distances."""
-PROBE = 36
-"""Steps that an input is given to move an arm that was halted."""
-MOVED = 2e-4
-"""An arm whose joints have moved so far in that time is not stuck [rad]."""
 GRIP_SPEED = 0.05
 """How fast gaps of fingers follow what is wanted [m/s]."""
 KINDS = ("random", "adversarial", "human")
@@ -100,6 +96,8 @@ def run(
         figures[f"{robot}.p99_ms"] = 1000 * float(np.quantile(seconds, 0.99))
         figures[f"{robot}.min_distance_mm"] = 1000 * min(each.distance for each in done)
         figures[f"{robot}.deepest_contact_mm"] = 1000 * min(each.overlap for each in done)
+        straight = [line for some in spread(straight_lines, tasks(robot, seed), jobs) for line in some]
+        figures |= line_figures(robot, straight)
         for kind, lines in (("violation", "violations"), ("stuck", "stuck")):
             found = Counter(line for each in done for line in getattr(each, lines))
             notes += [f"{robot}: {kind}: {line} (x{count})" for line, count in found.most_common(5)]
@@ -107,7 +105,9 @@ def run(
         "showtell": f"kinematic, {1 / DT:.0f} Hz, one core a task; a third each of random, adversarial and human-like "
         f"input; times are those of the core; limits "
         f"looked at each step, all distances every {LOOK_EVERY} steps; at least {1000 * LEAST:g} mm to "
-        "everything but what fingers touch"
+        "everything but what fingers touch",
+        "lines": f"{STARTS} random starts and directions, each at {', '.join(map(str, SPEEDS))} m/s over {LONG} m with "
+        "nothing around; all slow-downs count, up to where a joint's end or the robot itself turns the tool off",
     }
     return BenchReport(figures, settings=settings, notes=tuple(notes))
 
@@ -143,7 +143,8 @@ class _Driver:
         self, robot: RobotModel, obstacles: Sequence[Obstacle], start: FloatArray, rng: np.random.Generator
     ) -> None:
         self._robot, self._rng, self._start = robot, rng, start
-        self._servo, self._probe = RobotServo(robot, obstacles), RobotServo(robot, obstacles)
+        self._servo = RobotServo(robot, obstacles)
+        self._way_out = WayOut(robot, RobotServo(robot, obstacles))
         self._judge = CollisionModel(robot, obstacles, may_touch=_touching(robot, obstacles))
         self._all = CollisionModel(robot, obstacles)
         self._input = InputMaker(robot, obstacles, rng)
@@ -196,7 +197,7 @@ class _Driver:
                 openings[name] = max(openings[name] + float(change), robot.arms[name].gripper.min_opening)
             if step % LOOK_EVERY == 0:
                 self._look(q, openings, base, kind)
-            wait = wait + 1 if _halted(result) else 0
+            wait = wait + 1 if halted(result) else 0
             if wait % 120 == 5:
                 self._find_way_out(result, q, openings, base, kind)
         self._check(np.array(speeds), np.array(track), kind)
@@ -255,44 +256,13 @@ class _Driver:
     def _find_way_out(
         self, result: RobotServoResult, q: FloatArray, openings: dict[str, float], base: Pose, kind: str
     ) -> None:
-        """For each arm that was asked to move and does not, look for an input that moves it."""
-        for name, arm in result.arms.items():
-            if not arm.asked.any() or np.abs(arm.executed).max() > 1e-4:
-                continue
+        """For each arm that was asked to move and does not, look for an input that moves it; so for the base."""
+        for name, stuck in self._way_out.stuck(result, q, openings, base).items():
             self._halted += 1
-            if not any(self._moves(name, wish, q, openings, base) for wish in _inputs(self._robot, name)):
-                self._stuck.append(f"{kind}: arm {name}: {arm.reason} {arm.detail}")
-
-    def _moves(self, name: str, wish: ArmWish, q: FloatArray, openings: dict[str, float], base: Pose) -> bool:
-        self._probe.reset()
-        command = DriveCommand({name: wish})
-        where, here = self._robot.slice_of(name), q
-        for _ in range(PROBE):
-            here = (
-                here
-                + self._probe.step(command, ServoView(here, np.zeros(len(q)), openings, base), DT).joint_velocity * DT
-            )
-            if np.abs(here - q)[where].max() > MOVED:
-                return True
-        return False
-
-
-def _halted(result: RobotServoResult) -> bool:
-    """Whether something stands that was asked to move, not because everything was told to stop."""
-    return any(
-        arm.reason not in STOPPING and bool(arm.asked.any()) and float(np.abs(arm.executed).max()) < 1e-4
-        for arm in result.arms.values()
-    )
-
-
-def _inputs(robot: RobotModel, name: str) -> list[ArmWish]:
-    """One twist or joint at a time, both ways."""
-    rows = np.vstack((0.1 * np.eye(6), -0.1 * np.eye(6)))
-    rows[[3, 4, 5, 9, 10, 11]] *= 3.0
-    twists = [ArmWish(tuple(row.tolist())) for row in rows]
-    return twists + [
-        ArmWish(jog=(joint, speed)) for joint in range(len(robot.arms[name].joint_names)) for speed in (0.3, -0.3)
-    ]
+            if stuck and name == "base":
+                self._stuck.append(f"{kind}: base: {result.base_reason} {result.base_detail}")
+            elif stuck:
+                self._stuck.append(f"{kind}: arm {name}: {result.arms[name].reason} {result.arms[name].detail}")
 
 
 def _touching(robot: RobotModel, obstacles: Sequence[Obstacle]) -> list[tuple[str, str]]:

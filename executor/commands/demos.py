@@ -10,6 +10,8 @@ import typer
 from executor.commands.output import FAILED, Json, Output, Seed
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from teleop import Demo
 
 
@@ -31,6 +33,10 @@ def demos(
     start: Annotated[float, typer.Option("--from", min=0.0, help="Where the piece starts [s].")] = 0.0,
     end: Annotated[float | None, typer.Option("--to", help="Where it ends [s]; the demo's end without it.")] = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="The trimmed demo, a new file.")] = None,
+    summary: Annotated[
+        bool, typer.Option("--summary", help="Only count clips, frames, sentences, words and objects (table 6.1).")
+    ] = False,
+    language: Annotated[str | None, typer.Option(help="With --summary: sentences of this language only.")] = None,
     say: Annotated[list[str] | None, typer.Option(help="Add a sentence to the one demo; may be given again.")] = None,
     label: Annotated[Label | None, typer.Option(help="Say how the one demo ended.")] = None,
     note: Annotated[str, typer.Option(help="Why it ended so; with --label.")] = "",
@@ -40,6 +46,8 @@ def demos(
     """List recorded demos: what was said, how they ended, what happened, which are broken.
 
     Example: showtell demos demos/ --check
+
+    Example: showtell demos leeds/ --summary --language en
 
     Example: showtell demos demos/ --trim board_1_0000.mcap --from 1.2 --to 5 -o demos/piece.mcap
     """
@@ -51,6 +59,9 @@ def demos(
         _trim(out, directory, trim, start, end, output)
         return
     paths = demo_paths(directory)
+    if summary:
+        _summarise(out, paths, language)
+        return
     if say or label is not None:
         _add(directory, say or [], label, note)
     repaired = _repair(out, paths) if repair else []
@@ -73,6 +84,38 @@ def demos(
     out.result({"demos": rows, "broken": len(broken), "repaired": repaired})
     if broken:
         raise typer.Exit(FAILED)
+
+
+def _summarise(out: Output, paths: list[Path], language: str | None) -> None:
+    """Count what the demos hold."""
+    from dataclasses import asdict
+
+    from executor.demo_files import read_demo
+    from executor.demo_summary import summarise
+
+    with out.progress("reading", len(paths)) as advance:
+
+        def demos() -> "Iterator[Demo]":
+            for path in paths:
+                yield read_demo(path)
+                advance()
+
+        found = summarise(demos(), language)
+    out.table(
+        "What they amount to" + (f", in {language}" if language else ""),
+        ("video clips", "frames at 10 Hz", "commands", "unique words", "objects (average)", "length [s]"),
+        [
+            (
+                found.clips,
+                found.frames,
+                found.commands,
+                found.words,
+                f"{found.objects:.1f}",
+                f"{found.seconds:.1f}",
+            )
+        ],
+    )
+    out.result({"summary": asdict(found), "language": language})
 
 
 def _row(path: Path, check: bool) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from executor.commands import evaluate_actions, evaluate_concepts, evaluate_tracking
 from executor.commands.output import Json, Output, Seed, ShowtellGroup
 
 if TYPE_CHECKING:
@@ -15,6 +16,10 @@ if TYPE_CHECKING:
 app = typer.Typer(
     cls=ShowtellGroup, no_args_is_help=True, help="Reproduce an experiment, with our figures and each baseline's."
 )
+
+evaluate_actions.add_to(app)
+evaluate_concepts.add_to(app)
+evaluate_tracking.add_to(app)
 
 
 class Split(StrEnum):

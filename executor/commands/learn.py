@@ -25,6 +25,7 @@ def learn(
     ] = None,
     resume: Annotated[Path | None, typer.Option(help="Knowledge to go on from.")] = None,
     skip_broken: Annotated[bool, typer.Option("--skip-broken", help="Pass over demos that are incomplete.")] = False,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes that look at demos of a table; 0 takes one a core.")] = 0,
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
@@ -43,36 +44,65 @@ def learn(
     learner = Learner(Knowledge.load(resume) if resume else None, seed=seed)
     before = learner.knowledge.demos
     if demos is not None:
-        lessons = _from_demos(out, learner, demos, skip_broken)
+        lessons = _from_demos(out, learner, demos, skip_broken, seed, jobs)
     else:
         lessons = _from_release(out, learner, train_robots, seed)
     learner.knowledge.save(output)
     _tell(out, learner, output, before, lessons, seed)
 
 
-def _from_demos(out: Output, learner: "Learner", where: Path, skip_broken: bool) -> list[tuple["Lesson", float]]:
-    """Learn from recorded demos; returns what came of each and the time it took [s]."""
+def _from_demos(
+    out: Output, learner: "Learner", where: Path, skip_broken: bool, seed: int, jobs: int
+) -> list[tuple["Lesson", float]]:
+    """Learn from recorded demos; returns what came of each and the time it took [s].
+
+    What cameras saw at a table is perceived first, in parallel, and kept for the next time (`showtell perceive`).
+    """
+    from executor.commands.perceive import CACHE
     from executor.demo_files import demo_paths, open_demo
     from executor.errors import InputError
+    from learning.perception.stage import perceive_demos
     from robots import ShowtellError
 
     paths = demo_paths(where)
+    seen = {}
+    if _at_table(paths):
+        folder = (where if where.is_dir() else where.parent) / CACHE
+        with out.progress("perceiving", len(paths)) as advance:
+            done = perceive_demos(paths, folder, seed=seed, jobs=jobs, on_done=lambda outcome: advance())
+        seen = {each.demo: each for each in done}
     lessons = []
     with out.progress("learning", len(paths)) as advance:
         for path in paths:
             try:
                 demo = open_demo(path)
+                begun = perf_counter()
+                if path in seen:
+                    lesson = learner.study(seen[path].observation().observation, demo.utterances)
+                else:
+                    lesson = learner.observe(demo)
+                lessons.append((lesson, perf_counter() - begun))
             except ShowtellError as error:
                 if not skip_broken:
                     raise
                 out.note(f"passed over: {error}")
-            else:
-                begun = perf_counter()
-                lessons.append((learner.observe(demo), perf_counter() - begun))
             advance()
     if not lessons:
         raise InputError(f"{where}: every demo is broken; nothing was learned")
     return lessons
+
+
+def _at_table(paths: list[Path]) -> bool:
+    """Whether the first demo that can be read shows a table."""
+    from executor.demo_files import read_demo
+    from robots import ShowtellError
+
+    for path in paths:
+        try:
+            return read_demo(path).scene.kind != "board"
+        except ShowtellError:
+            continue
+    return False
 
 
 def _from_release(out: Output, learner: "Learner", directory: Path | None, seed: int) -> list[tuple["Lesson", float]]:
@@ -110,7 +140,10 @@ def _tell(
     concepts = {name: len(mixture.components) for name, mixture in knowledge.spaces.mixtures.items()}
     concepts["action"] = len(knowledge.spaces.actions)
     out.say(f"{len(lessons)} demos learned from" + (f", on top of {before} earlier ones" if before else ""))
+    unheard = sum(lesson.unheard for lesson, _ in lessons)
     out.say(f"{heard} sentences heard, {validated} of them read in a way that does what was shown")
+    if unheard:
+        out.say(f"{unheard} more were passed over: no action was seen with them, or it was shown at a table")
     out.say("concepts: " + ", ".join(f"{count} {name}" for name, count in concepts.items()))
     span = min(SPAN, len(times))
     out.say(f"time a demo: median of the first {span} {1000 * first:.0f} ms, of the last {span} {1000 * last:.0f} ms")

@@ -23,6 +23,8 @@ class Collection(StrEnum):
     """Which scenes and tasks are recorded."""
 
     BOARD = "board"
+    LEEDS = "leeds"
+    ORDERING = "ordering"
 
 
 def record(
@@ -30,8 +32,16 @@ def record(
     device: Annotated[
         Device, typer.Option(help="Who drives: a scripted operator, or you with a gamepad or this terminal's keys.")
     ] = Device.SCRIPTED,
-    count: Annotated[int, typer.Option("--count", "-n", min=1, help="How many demos.")] = 1,
-    collection: Annotated[Collection, typer.Option(help="Which scenes and tasks.")] = Collection.BOARD,
+    count: Annotated[
+        int | None, typer.Option("--count", "-n", min=1, help="How many demos: 1 of board, all of another collection.")
+    ] = None,
+    collection: Annotated[
+        Collection,
+        typer.Option(help="Which scenes and tasks: board; leeds (Baxter, 204 demos); ordering (Mico, 1,120 demos)."),
+    ] = Collection.BOARD,
+    languages: Annotated[
+        str, typer.Option(help="Languages of the sentences of leeds and ordering: en, ar, or en,ar.")
+    ] = "en",
     sentences: Annotated[int, typer.Option(min=1, help="At most so many sentences with each demo.")] = 3,
     robot: Annotated[str | None, typer.Option(help="Robot to use instead of the scene's own.")] = None,
     scene: Annotated[
@@ -51,6 +61,8 @@ def record(
     """Record demos: a scripted operator with a gamepad and a sentence for each, or you at your own pace.
 
     Example: showtell record --device scripted --count 20 --collection board -o demos/ --seed 1
+
+    Example: showtell record --collection leeds --languages en,ar -o leeds/
 
     Example: showtell record --device keyboard --scene tabletop --say "move the apple" --window -o demos/
     """
@@ -72,6 +84,12 @@ def record(
         out.say(f"{len(demos)} demos in {folder}: {', '.join(path.name for path in demos) or 'none was kept'}")
         out.result({"device": device.value, "scene": scene, "demos": [str(path) for path in demos], "seed": seed})
         return
+    if collection is not Collection.BOARD:
+        from executor.commands.record_collection import record_whole
+
+        record_whole(out, collection.value, folder, count, languages, robot, jobs, seed)
+        return
+    count = count or 1
     begun = perf_counter()
     with out.progress("recording", count) as advance:
         board = BoardCollection(folder, seed, robot, sentences=sentences)

@@ -12,18 +12,37 @@ if TYPE_CHECKING:
     from learning.concepts.feature_space import FEATURE_SPACES, FeatureSpace
     from learning.concepts.gaussian import Gaussian
     from learning.concepts.incremental_mixture import IncrementalMixture
+    from learning.concepts.mixture import Mixture
+    from learning.concepts.space_set import BOARD, COUNTER, TABLE, SpaceSet, find_space_set, register_space_set
+    from learning.concepts.track_mixture import TrackMixture
 
 __all__ = [
+    "BOARD",
+    "COUNTER",
     "FEATURE_SPACES",
+    "TABLE",
     "ConceptSpaces",
     "DemoConcepts",
     "FeatureSpace",
     "Gaussian",
     "IncrementalMixture",
+    "Mixture",
+    "SpaceSet",
+    "TrackMixture",
+    "find_space_set",
     "fit_demo",
+    "register_space_set",
 ]
 
 _HOMES = {
+    "BOARD": "space_set",
+    "COUNTER": "space_set",
+    "TABLE": "space_set",
+    "SpaceSet": "space_set",
+    "register_space_set": "space_set",
+    "find_space_set": "space_set",
+    "Mixture": "mixture",
+    "TrackMixture": "track_mixture",
     "FEATURE_SPACES": "feature_space",
     "ConceptSpaces": "concept_spaces",
     "DemoConcepts": "demo_concepts",

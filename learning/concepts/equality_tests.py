@@ -36,6 +36,33 @@ PRIOR_VALUES = 40
 
 
 @dataclass(frozen=True, slots=True)
+class EqualityRules:
+    """How values are counted in both tests.
+
+    Attributes:
+        spread_correlation: Intraclass correlation for covariances.
+        mean_correlation: Intraclass correlation for means; None takes the feature space's.
+        largest_size: Most that a mean's effective size can be.
+        largest_spread_size: Most that a covariance's effective size can be.
+        prior_values: What the covariance floor is worth in degrees of freedom.
+        both_ways: Whether covariances are compared both ways, or only the new one with the old one.
+    """
+
+    spread_correlation: float = SPREAD_CORRELATION
+    mean_correlation: float | None = None
+    largest_size: float = LARGEST_SIZE
+    largest_spread_size: float = LARGEST_SPREAD_SIZE
+    prior_values: float = PRIOR_VALUES
+    both_ways: bool = True
+
+
+CLUSTERED = EqualityRules()
+"""Ours: values of a demo are clustered samples."""
+INDEPENDENT = EqualityRules(0.0, 0.0, float("inf"), float("inf"), 0.0, both_ways=False)
+"""As Song and Wang (2005) have it: every value counts as drawn by itself. It splinters; a baseline for evaluation."""
+
+
+@dataclass(frozen=True, slots=True)
 class Statistics:
     """What is known of K components, stacked.
 
@@ -71,7 +98,9 @@ def effective_size(count: FloatArray, demos: FloatArray, correlation: float, lar
     return np.minimum(count / (1.0 + np.maximum(count / demos - 1.0, 0.0) * correlation), largest)
 
 
-def covariance_p_values(new: Statistics, old: Statistics, diagonal: bool) -> FloatArray:
+def covariance_p_values(
+    new: Statistics, old: Statistics, diagonal: bool, rules: EqualityRules = CLUSTERED
+) -> FloatArray:
     """P-values of the W statistic (Ledoit and Wolf 2002) that covariances are equal.
 
     W = tr((S - I)^2) / d - (d / n) (tr(S) / d)^2 + d / n with S the covariance whitened by the other; n d W / 2 is
@@ -85,20 +114,22 @@ def covariance_p_values(new: Statistics, old: Statistics, diagonal: bool) -> Flo
         new: Statistics of A components.
         old: Statistics of K components.
         diagonal: Whether their covariances are diagonal.
+        rules: How values are counted.
 
     Returns:
         (A, K) in 0..1.
     """
-    size = _harmonic(
-        *(effective_size(one.counts, one.demos, SPREAD_CORRELATION, LARGEST_SPREAD_SIZE) for one in (new, old))
-    )
-    return np.minimum(
-        _w_p_values(new.covariances, old.precisions, size, diagonal),
-        _w_p_values(old.covariances, new.precisions, size.T, diagonal).T,
-    )
+    largest = rules.largest_spread_size
+    size = _harmonic(*(effective_size(one.counts, one.demos, rules.spread_correlation, largest) for one in (new, old)))
+    one_way = _w_p_values(new.covariances, old.precisions, size, diagonal)
+    if not rules.both_ways:
+        return one_way
+    return np.minimum(one_way, _w_p_values(old.covariances, new.precisions, size.T, diagonal).T)
 
 
-def mean_p_values(new: Statistics, old: Statistics, correlation: float, diagonal: bool) -> FloatArray:
+def mean_p_values(
+    new: Statistics, old: Statistics, correlation: float, diagonal: bool, rules: EqualityRules = CLUSTERED
+) -> FloatArray:
     """P-values of Hotelling's two-sample T-squared that means are equal.
 
     The pooled covariance has the degrees of freedom of the values seen; the means are as sure as the effective sizes
@@ -109,6 +140,7 @@ def mean_p_values(new: Statistics, old: Statistics, correlation: float, diagonal
         old: Statistics of K components.
         correlation: Intraclass correlation of their feature space.
         diagonal: Whether their covariances are diagonal.
+        rules: How values are counted.
 
     Returns:
         (A, K) in 0..1.
@@ -125,10 +157,12 @@ def mean_p_values(new: Statistics, old: Statistics, correlation: float, diagonal
         share = share[..., None]
         pooled = share * new.covariances[:, None] + (1.0 - share) * old.covariances[None]
         distance = np.sum(difference * np.linalg.solve(pooled, difference[..., None])[..., 0], axis=2)
-    size = _harmonic(*(effective_size(one.counts, one.demos, correlation, LARGEST_SIZE) for one in (new, old)))
-    freedom = total - 2.0 + PRIOR_VALUES
-    f_statistic = size * distance * (freedom - dimension + 1.0) / (freedom * dimension)
-    return np.asarray(fdtrc(float(dimension), freedom - dimension + 1.0, f_statistic))
+    shared = correlation if rules.mean_correlation is None else rules.mean_correlation
+    size = _harmonic(*(effective_size(one.counts, one.demos, shared, rules.largest_size) for one in (new, old)))
+    freedom = total - 2.0 + rules.prior_values
+    with np.errstate(invalid="ignore", divide="ignore"):  # too few independent values to test: NaN passes no test
+        f_statistic = size * distance * (freedom - dimension + 1.0) / (freedom * dimension)
+        return np.asarray(fdtrc(float(dimension), freedom - dimension + 1.0, f_statistic))
 
 
 def mean_log_likelihoods(new: Statistics, old: Statistics) -> FloatArray:

@@ -1,13 +1,15 @@
 """The feature spaces in which concepts are found, one small class each (thesis 3.3.2 and 3.3.3).
 
-A class turns measured values into vectors in which near means alike (`embed`), and states the scales at which its
-space is looked at. A new space is added by writing such a class and naming it in `FEATURE_SPACES`.
+A class says where its values are measured (`measured`), turns them into vectors in which near means alike (`embed`),
+and states the scales at which its space is looked at. The classes here are those of the board, `table_spaces` holds
+those of a table seen through a camera, and `space_set` says how a new one is added.
 """
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
+from learning.perception.observation import Observation
 from robots.pose import FloatArray
 
 NEAR = 0.0845
@@ -15,6 +17,8 @@ NEAR = 0.0845
 that a block relates to those in the cells around, above and below it, diagonals included."""
 FAR = 0.13
 """What every distance beyond `NEAR` counts as [m]: perception tells near distances apart, and far is just far."""
+
+Kinds = Literal["tested", "wide", "learned"]
 
 
 class FeatureSpace:
@@ -31,16 +35,40 @@ class FeatureSpace:
         resolution: Modes closer than this start out as one in the search for the number of components.
         correlation: Share of a value's variance that all values of one demo have in common (intraclass correlation):
             light, placement and viewpoint stay the same within a demo, so its values are not independent draws.
+        relation: Whether its values are offsets between two things, rather than properties of one.
+        farthest: Pairs of things further apart than this have no value in a space of relations [m].
+        of_object: Whether a value belongs to the object wherever it rests, so that all its values are known to be of
+            one thing, in whatever place and turned whichever way; else to the object in its place.
+        in_motion: Whether a value is measured while the object moves too, and not only at rest.
+        kinds: How concepts are told apart over demos. `tested`: their covariances and means are tested for equality
+            (`IncrementalMixture`). `wide`: what is nearer than `kind_width` is one. `learned`: how much things of one
+            kind differ is learned from the tracks and from what was merged (`TrackMixture`, both).
+        kind_width: Root mean square distance, embedded, between what two concepts hold, below which they are one;
+            for `wide` only.
     """
 
     name: ClassVar[str]
     dimension: ClassVar[int]
+    relation: ClassVar[bool] = False
+    farthest: ClassVar[float] = np.inf
+    of_object: ClassVar[bool] = False
+    in_motion: ClassVar[bool] = False
+    kinds: ClassVar[Kinds] = "tested"
+    kind_width: ClassVar[float] = 0.0
     diagonal: ClassVar[bool] = False
     shared_noise: ClassVar[bool] = True
     grain: ClassVar[float]
     floor: ClassVar[float]
     resolution: ClassVar[float]
     correlation: ClassVar[float]
+
+    @classmethod
+    def measured(cls, observation: Observation) -> FloatArray | None:
+        """Measured values of a property, (F, N, m); NaN where one is not known, None where none is.
+
+        Unless a space says otherwise they are `Observation.features` of its name. Relations measure offsets.
+        """
+        return observation.features.get(cls.name)
 
     @staticmethod
     def embed(values: FloatArray) -> FloatArray:
@@ -60,6 +88,11 @@ class Colour(FeatureSpace):
     floor = 0.08
     resolution = 0.35
     correlation = 0.3
+
+    @classmethod
+    def measured(cls, observation: Observation) -> FloatArray | None:
+        """What the tracks hold."""
+        return observation.colour
 
     @staticmethod
     def embed(values: FloatArray) -> FloatArray:
@@ -81,6 +114,11 @@ class Shape(FeatureSpace):
     resolution = 0.03
     correlation = 0.3
 
+    @classmethod
+    def measured(cls, observation: Observation) -> FloatArray | None:
+        """What the tracks hold."""
+        return observation.shape
+
 
 class Location(FeatureSpace):
     """Where an object is, projected onto the table: a place [m]. Height stays with the tracks."""
@@ -91,6 +129,11 @@ class Location(FeatureSpace):
     floor = 0.008
     resolution = 0.025
     correlation = 0.5
+
+    @classmethod
+    def measured(cls, observation: Observation) -> FloatArray | None:
+        """What the tracks hold."""
+        return observation.location
 
     @staticmethod
     def embed(values: FloatArray) -> FloatArray:
@@ -103,6 +146,8 @@ class Direction(FeatureSpace):
 
     name = "direction"
     dimension = 3
+    relation = True
+    farthest = NEAR
     grain = 0.03
     floor = 0.08
     resolution = 0.3
@@ -127,6 +172,8 @@ class Distance(FeatureSpace):
 
     name = "distance"
     dimension = 1
+    relation = True
+    farthest = NEAR
     grain = 0.004
     floor = 0.008
     resolution = 0.018
@@ -142,6 +189,6 @@ class Distance(FeatureSpace):
 FEATURE_SPACES: dict[str, type[FeatureSpace]] = {
     space.name: space for space in (Colour, Shape, Location, Direction, Distance)
 }
-"""All feature spaces by name."""
+"""The feature spaces of the board by name."""
 PROPERTIES = ("colour", "shape", "location")
 RELATIONS = ("direction", "distance")

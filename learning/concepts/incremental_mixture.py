@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.concepts.equality_tests import (
+    CLUSTERED,
+    EqualityRules,
     Statistics,
     covariance_p_values,
     mean_log_likelihoods,
@@ -14,6 +16,8 @@ from learning.concepts.equality_tests import (
 )
 from learning.concepts.feature_space import FeatureSpace
 from learning.concepts.gaussian import Gaussian, merged, squared_mahalanobis, stacked
+from learning.concepts.mixture_json import components_from_json, components_to_json
+from learning.concepts.track_noise import TrackNoise
 from learning.errors import PerceptionError
 from learning.saved_numbers import saved_count
 from robots.pose import FloatArray
@@ -24,20 +28,23 @@ concept that should not be."""
 
 
 class IncrementalMixture:
-    """The concepts of one feature space. Only these components are kept, no values.
+    """The concepts of one feature space. Only these components are kept, no values. Satisfies `Mixture`.
 
     Concept numbers are never used twice: number n keeps its meaning as learning goes on. When two old components turn
     out to be equivalent, the smaller number stays and the larger becomes an alias of it (`resolve`).
     """
 
-    def __init__(self, space: type[FeatureSpace]) -> None:
+    def __init__(self, space: type[FeatureSpace], rules: EqualityRules = CLUSTERED) -> None:
         """Start without concepts.
 
         Args:
             space: The feature space, with its scales.
+            rules: How values are counted in the tests of equality.
         """
         self.space = space
+        self._rules = rules
         self._components: dict[int, Gaussian] = {}
+        self._names: dict[int, str] = {}
         self._aliases: dict[int, int] = {}
         self._next_number = 0
         self._demos = 0
@@ -47,6 +54,11 @@ class IncrementalMixture:
     def components(self) -> Mapping[int, Gaussian]:
         """Concept number to component, aliases left out, in ascending order of number."""
         return dict(sorted(self._components.items()))
+
+    @property
+    def names(self) -> Mapping[int, str]:
+        """Names that a user gave to concepts, by number."""
+        return dict(sorted(self._names.items()))
 
     @property
     def numbers_given(self) -> int:
@@ -65,13 +77,21 @@ class IncrementalMixture:
             number = self._aliases[number]
         return number
 
-    def update(self, components: Sequence[Gaussian]) -> list[int]:
+    def update(
+        self,
+        components: Sequence[Gaussian],
+        noise: TrackNoise | None = None,
+        names: Sequence[str | None] | None = None,
+    ) -> list[int]:
         """Merge the components of one demo into the mixture (algorithm 2).
 
         Takes time in proportion to the number of concepts, whatever the number of demos seen.
 
         Args:
             components: The demo's own mixture.
+            noise: Not used: components are compared by their own covariances.
+            names: What a user calls each component, None where nothing was said: those of one name become one concept,
+                and those of different names never do.
 
         Returns:
             The concept number that each component became part of.
@@ -88,7 +108,9 @@ class IncrementalMixture:
             matches = [known[int(np.argmax(row))] if np.any(row > -np.inf) else None for row in likelihood]
         numbers: list[int] = []
         seen: set[int] = set()
-        for component, match in zip(components, matches, strict=True):
+        called = names or [None] * len(components)
+        for component, matched, name in zip(components, matches, called, strict=True):
+            match = self._named(None if matched is None else self.resolve(matched), name)
             if match is None:  # (A.4): its weight is its share of the new total
                 number = self._next_number
                 self._next_number += 1
@@ -98,9 +120,11 @@ class IncrementalMixture:
                 kept = self._components[number]
                 # Two components of one demo that match the same concept are one sighting of it.
                 self._components[number] = self._shaped(merged(kept, component, kept.demos + (number not in seen)))
+            if name is not None:
+                self._names.setdefault(number, name)
             seen.add(number)
             numbers.append(number)
-        self._merge_equivalent(seen, first_new)
+        self._merge_equivalent({self.resolve(number) for number in seen}, first_new)
         self._prepared = None
         numbers = [self.resolve(number) for number in numbers]
         renamed = self._close_gaps(first_new)
@@ -138,21 +162,15 @@ class IncrementalMixture:
 
     def to_json(self) -> dict[str, Any]:
         """Plain numbers, lists and strings; `from_json` gives the same mixture back exactly."""
-        rows, columns = self._kept_entries()
-        return {
+        data = {
             "demos": self._demos,
             "next": self._next_number,
             "aliases": {str(number): kept for number, kept in sorted(self._aliases.items())},
-            "components": {
-                str(number): {
-                    "mean": component.mean.tolist(),
-                    "covariance": component.covariance[rows, columns].tolist(),
-                    "count": component.count,
-                    "demos": component.demos,
-                }
-                for number, component in self.components.items()
-            },
+            "components": components_to_json(self.components, self.space),
         }
+        if self._names:
+            data["names"] = {str(number): name for number, name in self.names.items()}
+        return data
 
     @classmethod
     def from_json(cls, space: type[FeatureSpace], data: Mapping[str, Any]) -> "IncrementalMixture":
@@ -162,26 +180,8 @@ class IncrementalMixture:
             ValueError, KeyError, TypeError: `data` is not what `to_json` wrote.
         """
         mixture = cls(space)
-        rows, columns = mixture._kept_entries()
-        for number, entry in data["components"].items():
-            mean = np.array(entry["mean"], dtype=np.float64)
-            entries = np.array(entry["covariance"], dtype=np.float64)
-            if entries.shape != rows.shape:
-                raise ValueError(f"concept {space.name}_{number}: covariance must be {len(rows)} numbers")
-            covariance = np.zeros((space.dimension, space.dimension))
-            covariance[rows, columns] = entries
-            covariance[columns, rows] = entries
-            if mean.shape != (space.dimension,) or not np.all(np.isfinite(mean)):
-                raise ValueError(f"concept {space.name}_{number}: mean must be {space.dimension} finite numbers")
-            if not np.all(np.isfinite(covariance)) or np.any(np.linalg.eigvalsh(covariance) <= 0.0):
-                raise ValueError(
-                    f"concept {space.name}_{number}: variances must be finite and positive, in every direction"
-                )
-            count = saved_count(entry["count"], f"concept {space.name}_{number}: count")
-            demos = saved_count(entry["demos"], f"concept {space.name}_{number}: demos", least=1)
-            if count == 0.0:
-                raise ValueError(f"concept {space.name}_{number}: count is 0, expected more")
-            mixture._components[int(number)] = Gaussian(mean, covariance, count, int(demos))
+        mixture._components = components_from_json(data["components"], space)
+        mixture._names = {int(number): str(name) for number, name in data.get("names", {}).items()}
         mixture._aliases = {int(number): int(kept) for number, kept in data["aliases"].items()}
         mixture._next_number = int(saved_count(data["next"], f"numbers given in {space.name}"))
         mixture._demos = int(saved_count(data["demos"], f"demos of {space.name}"))
@@ -194,12 +194,31 @@ class IncrementalMixture:
             raise ValueError(f"aliases of {space.name} must point to smaller numbers")
         return mixture
 
-    def _kept_entries(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Rows and columns of the covariance that are stored: its diagonal, or its upper triangle."""
-        if self.space.diagonal:
-            diagonal = np.arange(self.space.dimension)
-            return diagonal, diagonal
-        return np.triu_indices(self.space.dimension)
+    def _named(self, match: int | None, name: str | None) -> int | None:
+        """Concept that a component becomes part of, given the equal one and what a user calls it; None for a new one.
+
+        An equal concept without a name that a user now calls like another is the same as that one.
+        """
+        if name is None:
+            return match
+        known = next((number for number, called in self._names.items() if called == name), None)
+        if match is None or self._names.get(match, name) != name:
+            return known
+        if known is None or known == match:
+            return match
+        return self._join(known, match)
+
+    def _join(self, first: int, second: int) -> int:
+        """Merge two concepts; returns the number that stays."""
+        kept, gone = min(first, second), max(first, second)
+        one, other = self._components[kept], self._components.pop(gone)
+        # Some demos may have shown both; which ones was not kept.
+        demos = min(one.demos + other.demos, self._demos)
+        self._components[kept] = self._shaped(merged(one, other, demos))
+        self._aliases[gone] = kept
+        if gone in self._names:
+            self._names.setdefault(kept, self._names.pop(gone))
+        return kept
 
     def _shaped(self, component: Gaussian) -> Gaussian:
         """Drop what the space does not keep of a covariance."""
@@ -210,8 +229,8 @@ class IncrementalMixture:
     def _equivalents(self, new: Sequence[Gaussian], old: Sequence[Gaussian]) -> FloatArray:
         """Log likelihood of each old component for the values of each new one, -inf unless both tests pass, (A, K)."""
         first, second = Statistics.of(new), Statistics.of(old)
-        passed = covariance_p_values(first, second, self.space.diagonal) > SIGNIFICANCE
-        passed &= mean_p_values(first, second, self.space.correlation, self.space.diagonal) > SIGNIFICANCE
+        passed = covariance_p_values(first, second, self.space.diagonal, self._rules) > SIGNIFICANCE
+        passed &= mean_p_values(first, second, self.space.correlation, self.space.diagonal, self._rules) > SIGNIFICANCE
         return np.where(passed, mean_log_likelihoods(first, second), -np.inf)
 
     def _close_gaps(self, first_new: int) -> dict[int, int]:
@@ -220,6 +239,8 @@ class IncrementalMixture:
         renamed = {number: first_new + index for index, number in enumerate(stayed)}
         for number, new_number in renamed.items():  # downwards, so that none is overwritten
             self._components[new_number] = self._components.pop(number)
+            if number in self._names:
+                self._names[new_number] = self._names.pop(number)
         self._aliases = {gone: kept for gone, kept in self._aliases.items() if gone < first_new}
         self._next_number = first_new + len(stayed)
         return renamed
@@ -236,14 +257,15 @@ class IncrementalMixture:
             likelihood[np.arange(len(rows)), [numbers.index(number) for number in rows]] = -np.inf
             both_new = (np.array(rows) >= first_new)[:, None] & (np.array(numbers) >= first_new)
             likelihood[both_new] = -np.inf
+            if self._names:
+                called = [self._names.get(number) for number in numbers]
+                for index, number in enumerate(rows):
+                    name = self._names.get(number)
+                    likelihood[index, [name is not None and other not in (None, name) for other in called]] = -np.inf
             row, column = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
             if likelihood[row, column] == -np.inf:
                 return
             number, match = rows[row], numbers[column]
             kept, gone = min(number, match), max(number, match)
-            first, second = self._components[kept], self._components.pop(gone)
-            # Some demos may have shown both; which ones was not kept.
-            demos = min(first.demos + second.demos, self._demos)
-            self._components[kept] = self._shaped(merged(first, second, demos))
-            self._aliases[gone] = kept
+            self._join(kept, gone)
             changed = (changed - {gone}) | {kept}

@@ -3,15 +3,16 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from learning.graphs.action_graphlet import ActionGraphlet, GraphletState
+from learning.graphs.action_graphlet import ActionGraphlet
 from learning.graphs.action_library import ActionLibrary
+from learning.graphs.graphlet_state import GraphletState, Side
 
 if TYPE_CHECKING:
     from learning.graphs.action_states import action_of
     from learning.graphs.graphlets import Graphlet
     from learning.graphs.state_graph import StateGraph
 
-__all__ = ["ActionGraphlet", "ActionLibrary", "Graphlet", "GraphletState", "StateGraph", "action_of"]
+__all__ = ["ActionGraphlet", "ActionLibrary", "Graphlet", "GraphletState", "Side", "StateGraph", "action_of"]
 
 _HOMES = {"Graphlet": "graphlets", "StateGraph": "state_graph", "action_of": "action_states"}
 

@@ -4,27 +4,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from learning.graphs.graphlet_state import GraphletState, Side
+
 if TYPE_CHECKING:
     import networkx as nx
-
-
-@dataclass(frozen=True, slots=True)
-class GraphletState:
-    """One qualitative state of the gripper and the object it manipulates.
-
-    Attributes:
-        gripper_closed: State of the gripper.
-        touching: Whether the distance between gripper and object is the *at it* concept.
-        object_location: Location variable of the object, numbered in order of appearance; any place can fill it in.
-    """
-
-    gripper_closed: bool
-    touching: bool
-    object_location: int
-
-    def __str__(self) -> str:
-        """Write the state as `C touch 1`."""
-        return f"{'C' if self.gripper_closed else 'O'} {'touch' if self.touching else 'apart'} {self.object_location}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +71,7 @@ class ActionGraphlet:
             if state.object_location not in shift:
                 shift[state.object_location] = fresh
                 fresh += 1
-            location = shift[state.object_location]
-            continued.append(GraphletState(state.gripper_closed, state.touching, location))
+            continued.append(state.at(shift[state.object_location]))
         return ActionGraphlet.of(continued)
 
     def to_networkx(self) -> "nx.DiGraph[str]":
@@ -113,6 +95,12 @@ class ActionGraphlet:
             graph.add_edge(f"{name}.relation", f"{name}.distance")
             graph.add_node(f"location{state.object_location}", label="location")
             graph.add_edge(f"{name}.c", f"location{state.object_location}")
+            if state.raised:
+                graph.add_node(f"{name}.raised", label="raised")
+                graph.add_edge(f"{name}.c", f"{name}.raised")
+            if state.side is not None:
+                graph.add_node(f"{name}.side", label=state.side.name.lower())
+                graph.add_edge(f"{name}.relation", f"{name}.side")
             if index:
                 graph.add_edge(f"s{index - 1}", name)
         return graph
@@ -128,8 +116,8 @@ class ActionGraphlet:
         return bool(nx.is_isomorphic(self.to_networkx(), other.to_networkx(), node_match=match))
 
     def to_json(self) -> list[list[int]]:
-        """One `[closed, touching, location]` a state."""
-        return [[int(state.gripper_closed), int(state.touching), state.object_location] for state in self.states]
+        """One row a state: `[closed, touching, location]`, and more where more is known (`GraphletState.to_json`)."""
+        return [state.to_json() for state in self.states]
 
     @classmethod
     def from_json(cls, data: Sequence[Sequence[Any]]) -> "ActionGraphlet":
@@ -138,15 +126,10 @@ class ActionGraphlet:
         Raises:
             ValueError, TypeError: `data` is not what `to_json` wrote.
         """
-        states = []
-        for row in data:
-            closed, touching, location = row
-            if closed not in (0, 1) or touching not in (0, 1) or int(location) < 0:
-                raise ValueError(f"graphlet state {row} must be [closed 0 or 1, touching 0 or 1, location 0 or more]")
-            states.append(GraphletState(bool(closed), bool(touching), int(location)))
+        states = tuple(GraphletState.from_json(row) for row in data)
         if not states:
             raise ValueError("a graphlet must have at least one state")
-        return cls(tuple(states))
+        return cls(states)
 
     def _overlap(self, other: "ActionGraphlet") -> int:
         """Length of the longest end of this action that is also how `other` begins."""
@@ -156,15 +139,12 @@ class ActionGraphlet:
         return 0
 
 
-def _grip(state: GraphletState) -> tuple[bool, bool]:
-    """What the gripper does, whatever the object's place."""
-    return state.gripper_closed, state.touching
+def _grip(state: GraphletState) -> tuple[bool, bool, bool, Side | None]:
+    """What the gripper does with the object, whatever the object's place."""
+    return state.gripper_closed, state.touching, state.raised, state.side
 
 
 def _numbered(states: Sequence[GraphletState]) -> tuple[GraphletState, ...]:
     """Number location variables in order of first appearance."""
     names: dict[int, int] = {}
-    return tuple(
-        GraphletState(state.gripper_closed, state.touching, names.setdefault(state.object_location, len(names)))
-        for state in states
-    )
+    return tuple(state.at(names.setdefault(state.object_location, len(names))) for state in states)

@@ -6,10 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.concepts.concept_spaces import ConceptSpaces
-from learning.graphs.action_graphlet import ActionGraphlet, GraphletState
+from learning.graphs.action_graphlet import ActionGraphlet
+from learning.graphs.action_measures import measured
+from learning.graphs.camera_states import segmented
+from learning.graphs.graphlet_state import GraphletState
 from learning.graphs.smoothing import lasting, smoothed, without_short_rows
+from learning.perception.gaps import gap_offsets
 from learning.perception.observation import Observation
 from learning.perception.tracks import MOVED, anchors, moved_object
+from robots.pose import FloatArray
 
 SHORTEST_STATE = 2
 """Frames that a qualitative state must last: a shorter one is noise, or changes that belong together."""
@@ -18,8 +23,8 @@ SHORTEST_STATE = 2
 def action_of(observation: Observation, spaces: ConceptSpaces) -> ActionGraphlet:
     """Encode a demo as the sequence of states of its gripper and the object it manipulates.
 
-    Frames carry noise and a driven demo flickers: tracks are smoothed, each predicate must last for some frames, and
-    changes that come together are one change.
+    Where a camera saw the demo, see `camera_states.segmented`. On the board, where poses are known but for a little
+    noise: tracks are smoothed, each predicate must last for some frames, and changes that come together are one change.
 
     Args:
         observation: The demo's tracks.
@@ -28,19 +33,35 @@ def action_of(observation: Observation, spaces: ConceptSpaces) -> ActionGraphlet
     Raises:
         PerceptionError: Nothing was moved.
     """
+    return shown_action(observation, spaces)[0]
+
+
+def shown_action(
+    observation: Observation, spaces: ConceptSpaces
+) -> tuple[ActionGraphlet, list[dict[str, FloatArray]] | None, int]:
+    """The graphlet of a demo (`action_of`), the measures of its states, and the index of the manipulated object.
+
+    Measures are those of `action_measures.measured`, or None on the board, where actions are known by key frames.
+
+    Raises:
+        PerceptionError: Nothing was moved.
+    """
+    if observation.extent is not None:
+        segmentation = segmented(observation, spaces)
+        return segmentation.graphlet, measured(segmentation), segmentation.moved
     moved = moved_object(observation)
     touching = lasting(touches(observation, spaces)[:, moved], SHORTEST_STATE)
     closed = lasting(observation.gripper_closed, SHORTEST_STATE)
     location = lasting(_location_variable(observation, moved), SHORTEST_STATE)
     rows = np.stack([closed, touching, location], axis=1).astype(np.int64)
     rows = without_short_rows(rows, SHORTEST_STATE)
-    return ActionGraphlet.of(_one_change_at_a_time(GraphletState(bool(c), bool(t), int(at)) for c, t, at in rows))
+    states = _one_change_at_a_time(GraphletState(bool(c), bool(t), int(at)) for c, t, at in rows)
+    return ActionGraphlet.of(states), None, moved
 
 
 def touches(observation: Observation, spaces: ConceptSpaces) -> NDArray[np.bool_]:
     """Whether the gripper is at each object, per frame, (F, N): their distance concept is the *at it* one."""
-    offset = observation.location - observation.gripper_location[:, None]
-    return np.asarray(spaces.predicates("distance", smoothed(offset)) == spaces.touching)
+    return np.asarray(spaces.predicates("distance", smoothed(gap_offsets(observation))) == spaces.touching)
 
 
 def _one_change_at_a_time(states: Iterable[GraphletState]) -> Iterator[GraphletState]:

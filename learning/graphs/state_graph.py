@@ -10,6 +10,8 @@ from learning.concepts.concept_spaces import ConceptSpaces
 from learning.concepts.feature_space import FEATURE_SPACES, NEAR
 from learning.graphs.action_graphlet import ActionGraphlet
 from learning.graphs.action_states import SHORTEST_STATE, action_of
+from learning.graphs.camera_predicates import CameraPredicates
+from learning.graphs.camera_states import Segmentation, segmented
 from learning.graphs.graphlets import ConceptNumber, Graphlet, graphlets_of
 from learning.graphs.smoothing import constant_runs, lasting, smoothed
 from learning.percept import NO_CONCEPT
@@ -61,10 +63,27 @@ class StateGraph:
         Raises:
             PerceptionError: Nothing was moved.
         """
+        if observation.extent is not None:
+            return cls._of_camera(segmented(observation, spaces), spaces)
         action = action_of(observation, spaces)
         moved = moved_object(observation)
         predicates = _Predicates(observation, spaces, moved)
         return cls(tuple(predicates.state(start) for start, _ in constant_runs(predicates.rows())), action)
+
+    @classmethod
+    def _of_camera(cls, segmentation: Segmentation, spaces: ConceptSpaces) -> "StateGraph":
+        """Encode a demo that a camera saw, with any number of objects, some of them hidden now and then."""
+        predicates = CameraPredicates(segmentation, spaces)
+        states = []
+        for start, _ in constant_runs(predicates.rows()):
+            objects = predicates.objects(start)
+            objects[GRIPPER] = (("location", int(predicates.location[start, predicates.number])),)
+            relations = {
+                (GRIPPER if i == predicates.number else i, j): concepts
+                for (i, j), concepts in predicates.pairs(start).items()
+            }
+            states.append(QualitativeState(start, bool(predicates.closed[start]), objects, relations))
+        return cls(tuple(states), segmentation.graphlet)
 
     def object_graphlets(self) -> frozenset[Graphlet]:
         """All object graphlets of all states: every combination of an object's properties (figure 3.12)."""

@@ -1,4 +1,4 @@
-"""Observations of the board: of a recorded demo, of key frames, and of a world that stands still."""
+"""Observations: of any recorded demo, and of the board: a demo, key frames, and a world that stands still."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +14,8 @@ from twin.scene_spec import ObjectSpec, SceneSpec
 from twin.state import WorldState
 
 if TYPE_CHECKING:
+    from learning.perception.camera_observation import Perceived
+    from learning.perception.observe_camera import Eyesight
     from teleop import Demo
 
 KEY_FRAME_LENGTH = 4
@@ -35,6 +37,38 @@ class KeyFrame:
     gripper_location: FloatArray
     gripper_closed: bool
     object_location: FloatArray
+
+
+def observe(demo: "Demo", rng: np.random.Generator) -> Observation:
+    """Observe any recorded demo: the board's states through noise, a table through the robot's camera.
+
+    Args:
+        demo: The recording.
+        rng: Source of all noise.
+
+    Raises:
+        PerceptionError: What the demo shows cannot be perceived.
+    """
+    return perceive_any(demo, rng).observation
+
+
+def perceive_any(demo: "Demo", rng: np.random.Generator, eyesight: "Eyesight | None" = None) -> "Perceived":
+    """As `observe`, with notes about what the tracks do not say.
+
+    Args:
+        demo: The recording.
+        rng: Source of all noise.
+        eyesight: Camera and size of pictures, for a table.
+
+    Raises:
+        PerceptionError: What the demo shows cannot be perceived.
+    """
+    from learning.perception.camera_observation import Perceived
+    from learning.perception.observe_camera import USUAL, perceive_camera_demo
+
+    if demo.scene.kind == "board":
+        return Perceived(observe_demo(demo, rng))
+    return perceive_camera_demo(demo, rng, eyesight or USUAL)
 
 
 def observe_key_frames(

@@ -5,11 +5,11 @@ from numpy.typing import NDArray
 
 from learning.concepts.concept_spaces import ConceptSpaces
 from learning.concepts.feature_space import FEATURE_SPACES, NEAR, PROPERTIES, RELATIONS
-from learning.graphs.action_states import action_of, touches
+from learning.graphs.action_states import shown_action, touches
 from learning.percept import NO_CONCEPT, Percept, ShownAction
 from learning.perception.observation import Observation
 from learning.perception.placements import clear_objects, column_of, landing_places
-from learning.perception.tracks import anchors, at_start, moved_object
+from learning.perception.tracks import anchors, at_start
 from robots.pose import FloatArray
 
 KNOWN_PLACE = 5.0
@@ -30,21 +30,19 @@ def perceive(
     Raises:
         PerceptionError: Nothing was moved.
     """
-    moved = moved_object(observation)
-    graphlet = action_of(observation, spaces)
+    graphlet, measures, moved = shown_action(observation, spaces)
     if learn_action:
-        action = spaces.actions.match_or_add(graphlet)
+        action = spaces.actions.match_or_add(graphlet, measures)
     else:
-        found = spaces.actions.find(graphlet)
+        found = spaces.actions.find(graphlet, measures)
         action = NO_CONCEPT if found is None else found
     percept = percept_of(observation, spaces)
     _, last = anchors(observation)
-    in_gripper = graphlet.states[-1].gripper_closed and graphlet.states[-1].touching
     return percept, ShownAction(
         action=action,
         parts=spaces.actions.parts_of(graphlet),
         moved=moved,
-        placement=None if in_gripper else column_of(last[moved]),
+        placement=None if graphlet.states[-1].holds else column_of(last[moved]),
         final_location=last[moved],
     )
 

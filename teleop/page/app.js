@@ -9,6 +9,7 @@ const TOKEN_KEY = "showtell-token";
 const HOLD_KEY = "f";
 const HOLD_BUTTON = BUTTONS.indexOf("left_stick");
 const SHOWN_NOTICES = 8;
+const RELEASE_AFTER_MS = 700; // a stop that two hands press at once, or one twice, is not released by the second press
 const DECK_BUTTONS = ["record", "stop-deck", "keep", "discard", "redo", "success", "failure"];
 const byId = (name) => document.getElementById(name);
 const KEYS_SHOWN = {" ": "Space", space: "Space", arrowup: "↑", arrowdown: "↓", arrowleft: "←", arrowright: "→",
@@ -19,7 +20,8 @@ const CONTROLS_SHOWN = {left_x: "left stick ↔", left_y: "left stick ↕", righ
   left: "D-pad ←", right: "D-pad →", a: "A", b: "B", x: "X", y: "Y", back: "Back", start: "Start", guide: "Guide"};
 
 const state = {socket: null, opened: false, yours: false, free: true, wanted: true, status: null, setup: null,
-  seq: 0, noticed: 0, holding: false, blind: false, enabled: true, speedTimer: 0};
+  seq: 0, noticed: 0, holding: false, blind: false, enabled: true, speedTimer: 0,
+  stoppedAt: 0, releases: false};
 
 // The token is in the address once; from then on only this tab knows it.
 const given = new URLSearchParams(location.hash.slice(1)).get("token");
@@ -65,14 +67,15 @@ function send(message) {
   if (state.socket?.readyState === WebSocket.OPEN) state.socket.send(JSON.stringify(message));
 }
 
-function sendInput({axes, buttons, at}) {
+function sendInput({axes, buttons, at, silence}) {
   if (!state.yours) return;
   const sent = [...buttons];
   const pressed = state.holding || buttons[HOLD_BUTTON] > 0.5 || operator.touch.size > 0;
   if (byId("hold").checked) sent[HOLD_BUTTON] = 0; // it holds motion on here, and means nothing else
   state.enabled = !byId("hold").checked || pressed;
   state.seq += 1;
-  send({type: "input", seq: state.seq, at, axes, buttons: sent, enabled: state.enabled});
+  send({type: "input", seq: state.seq, at, silence, axes, buttons: sent, enabled: state.enabled,
+    camera: stage.seen});
 }
 
 function hearBytes(data) {
@@ -120,6 +123,7 @@ function showControl() {
 }
 
 function showStatus(status) {
+  if (status.stopped && !state.status?.stopped) state.stoppedAt = performance.now();
   state.status = status;
   const {deck} = status;
   setText("scene", `${state.setup?.robot ?? ""} · ${deck.scene} ${deck.seed}`);
@@ -127,7 +131,8 @@ function showStatus(status) {
   showSafety(status.state, status.reason || `${free}: ${status.manner}`);
   const stop = byId("stop");
   stop.setAttribute("aria-pressed", String(status.stopped));
-  stop.firstChild.textContent = status.stopped ? "Release" : "Stop";
+  state.releases = status.stopped && performance.now() - state.stoppedAt > RELEASE_AFTER_MS;
+  stop.firstChild.textContent = state.releases ? "Release" : "Stop";
   setText("figure-time", `${status.time.toFixed(1)} s`);
   setText("figure-speed", `${(1000 * status.executed).toFixed(0)} mm/s`);
   const {latency} = status;
@@ -272,8 +277,7 @@ function notice(level, text) {
 // --- what a person does
 
 function toggleStop() {
-  if (state.status?.stopped) send({type: "release"});
-  else send({type: "stop"});
+  send({type: state.releases ? "release" : "stop"}); // as the button says
 }
 
 byId("stop").addEventListener("click", toggleStop);

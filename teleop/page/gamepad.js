@@ -1,5 +1,7 @@
 // Gamepad, keys and sticks on the screen, all as one W3C standard gamepad: four axes, seventeen buttons.
 
+import {Alive} from "./alive.js";
+
 export const AXES = ["left_x", "left_y", "right_x", "right_y"];
 export const BUTTONS = ["a", "b", "x", "y", "left_bumper", "right_bumper", "left_trigger", "right_trigger", "back",
   "start", "left_stick", "right_stick", "up", "down", "left", "right", "guide"];
@@ -23,7 +25,7 @@ export function keyName(event) {
 /** What is pressed now, from all sources. */
 export class Operator {
   /**
-   * @param {(state: {axes: number[], buttons: number[], at: number, shift: boolean}) => void} send
+   * @param {(state: {axes: number[], buttons: number[], at: number, silence: number}) => void} send
    *   is given every change at once, and what did not change 60 times a second.
    */
   constructor(send) {
@@ -37,6 +39,7 @@ export class Operator {
     this.last = "";
     this.sent = 0;
     this.since = 0;
+    this.alive = new Alive();
     this.worker = new Worker("ticker.js");
     this.worker.onmessage = () => this.tick();
   }
@@ -89,7 +92,7 @@ export class Operator {
     this.last = key;
     this.sent = now;
     this.since = 0;
-    this.send({...state, at});
+    this.send({...state, at, silence: this.alive.silence(now)});
   }
 
   read() {

@@ -7,6 +7,7 @@ export class Stage {
     this.views = [];
     this.view = "";
     this.frames = 0;
+    this.seen = null; // orientation of the picture, for driving along its axes
     this.works = true;
     this.pointers = new Map();
     if (!canvas.transferControlToOffscreen) {

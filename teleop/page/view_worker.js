@@ -5,7 +5,8 @@ import {Viewer} from "./viewer.js";
 let viewer = null;
 
 function tell() {
-  postMessage({views: viewer.views, view: viewer.view, frames: viewer.frames, works: Boolean(viewer.gl)});
+  const {views, view, frames, seen} = viewer;
+  postMessage({views, view, frames, seen, works: Boolean(viewer.gl)});
 }
 
 onmessage = ({data: [name, ...values]}) => {

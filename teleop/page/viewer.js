@@ -60,6 +60,7 @@ const SUN = unit([0.15, -0.35, 1.0]);
 const MOVE_MS = 350;
 const PIXELS = [0.6, 0.8, 1]; // of those that the screen has
 const TELL_EVERY = 5;
+const SAME_VIEW = 1 - 1e-7; // cosine of half the angle that a view must turn by to count as another one, 0.05 degrees
 const SLOW_MS = 150;
 /** Direction from which each view looks (x away from the robot, y left, z up) and its distance in radii. */
 const VIEWS = {
@@ -79,6 +80,7 @@ export class Viewer {
     this.cameras = [];
     this.scene = null;
     this.frames = 0;
+    this.seen = null; // orientation of the last picture, as opticalQuaternion has it
     [this.width, this.height, this.ratio, this.sky] = [800, 600, 1, [0.9, 0.925, 0.955]];
     this.orbit = {target: [0.2, 0, 0.1], yaw: -2.4, pitch: 0.6, distance: 1.6};
     this.flight = null;
@@ -268,7 +270,7 @@ export class Viewer {
       this.drawShadow();
       scene.fresh = false;
     }
-    const [clip, eye] = this.camera(width / height);
+    const [clip, eye, axes] = this.camera(width / height);
     const {sky} = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, width, height);
@@ -291,7 +293,11 @@ export class Viewer {
     gl.bindTexture(gl.TEXTURE_2D, scene.texture);
     this.drawMeshes();
     this.frames += 1;
-    if (this.frames % TELL_EVERY === 1) this.changed();
+    // What is driven along the axes of the picture means the picture that is seen.
+    const seen = opticalQuaternion(axes);
+    const turned = !this.seen || Math.abs(seen.reduce((sum, value, i) => sum + value * this.seen[i], 0)) < SAME_VIEW;
+    if (turned) this.seen = seen;
+    if (turned || this.frames % TELL_EVERY === 1) this.changed();
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     if (this.flight) this.redraw();
@@ -328,21 +334,21 @@ export class Viewer {
     return multiply(box, view);
   }
 
-  /** Clip matrix and eye of the view that is on. */
+  /** Clip matrix and eye of the view that is on, and its axes: right, up and back. */
   camera(aspect) {
     const mounted = this.cameras.findIndex((each) => each.name === this.view);
     if (mounted >= 0 && this.cameraPoses[mounted]) {
       const p = this.cameraPoses[mounted];
       const eye = [p[3], p[7], p[11]];
       const axes = [[p[0], p[4], p[8]], [-p[1], -p[5], -p[9]], [-p[2], -p[6], -p[10]]];
-      return [multiply(perspective(this.cameras[mounted].height, aspect, 0.05, 30), viewMatrix(eye, axes)), eye];
+      return [multiply(perspective(this.cameras[mounted].height, aspect, 0.05, 30), viewMatrix(eye, axes)), eye, axes];
     }
     const {target, yaw, pitch, distance} = this.orbit;
     const back = [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
     const eye = target.map((value, i) => value + distance * back[i]);
     const right = [-Math.sin(yaw), Math.cos(yaw), 0];
     const axes = [right, cross(back, right), back];
-    return [multiply(perspective(0.75, aspect, 0.02 * distance, 40), viewMatrix(eye, axes)), eye];
+    return [multiply(perspective(0.75, aspect, 0.02 * distance, 40), viewMatrix(eye, axes)), eye, axes];
   }
 
   fly() {
@@ -415,6 +421,18 @@ function unit(v) {
 
 function cross(a, b) {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+/** Unit quaternion x, y, z, w of a picture in the world: x to its right, y down, z into it. */
+function opticalQuaternion([right, up, back]) {
+  const [a, b, c] = [right, up.map((value) => -value), back.map((value) => -value)]; // columns of the rotation matrix
+  // Of the four ways to get it, the one that divides by the largest number.
+  const squares = [1 + a[0] - b[1] - c[2], 1 - a[0] + b[1] - c[2], 1 - a[0] - b[1] + c[2], 1 + a[0] + b[1] + c[2]];
+  const rows = [
+    [squares[0], a[1] + b[0], c[0] + a[2], b[2] - c[1]], [a[1] + b[0], squares[1], b[2] + c[1], c[0] - a[2]],
+    [c[0] + a[2], b[2] + c[1], squares[2], a[1] - b[0]], [b[2] - c[1], c[0] - a[2], a[1] - b[0], squares[3]],
+  ];
+  return unit(rows[squares.indexOf(Math.max(...squares))]);
 }
 
 function axesLooking(back, up) {

@@ -43,3 +43,5 @@ def test_a_loop_is_timed_with_and_without_recording(tmp_path: Path) -> None:
         median, latest = (figures[f"jitter.three_dof.{turn}.{which}_us"] for which in ("median", "max"))
         assert median is not None and latest is not None
         assert 0.0 <= median <= latest
+    for which in ("median", "p99"):
+        assert figures[f"jitter.three_dof.pairs.{which}_us"] is not None

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from executor.bench import servo
+from executor.bench import servo, servo_lines
 from teleop.servo_brakes import ServoBrakes
 
 
@@ -11,6 +11,8 @@ from teleop.servo_brakes import ServoBrakes
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(servo, "CHUNK", 360)
     monkeypatch.setattr(servo, "EPISODE", 120)
+    monkeypatch.setattr(servo_lines, "STARTS", 1)
+    monkeypatch.setattr(servo_lines, "SPEEDS", (0.3,))
 
 
 @pytest.mark.parametrize("robot", ["three_dof", "baxter", "mico_segway"])
@@ -21,6 +23,8 @@ def test_no_limit_is_broken_and_nothing_is_stuck(robot: str) -> None:
     assert (figures[f"{robot}.violations"], figures[f"{robot}.stuck"], report.notes) == (0, 0, ())
     distance = figures[f"{robot}.min_distance_mm"]
     assert distance is not None and distance > 5.0
+    drift, turned = figures[f"{robot}.drift_mm"], figures[f"{robot}.drift_deg"]
+    assert drift is not None and turned is not None and drift < 1.0 and turned < 0.2  # what the project promises
 
 
 def test_a_servo_that_changes_speeds_at_once_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -166,6 +166,9 @@ def test_a_page_that_freezes_or_is_closed_stops_the_robot(tmp_path: Path) -> Non
             await page.rests()
             await tab.key("keyUp", "d", "KeyD")
             await tab.until("document.getElementById('stop').getAttribute('aria-pressed') === 'true'")
+            await tab.click("#stop")  # pressed once more at once it stops, and releases nothing
+            await tab.until("document.getElementById('stop').textContent.startsWith('Release')")
+            assert page.status["stopped"]
             await tab.click("#stop")
             await page.ready()
 
@@ -294,3 +297,40 @@ def test_wrong_arguments_are_refused_before_anything_starts(arguments: list[str]
     app.command()(serve)
     with pytest.raises(TeleopError, match=re.escape(told)):
         CliRunner().invoke(app, arguments, catch_exceptions=False)
+
+
+def test_axes_of_the_camera_are_those_of_the_picture_on_the_page(tmp_path: Path) -> None:
+    async def test() -> None:
+        async with visit("board", tmp_path) as page:
+            tab = page.tab
+            await page.ready()
+            await tab.key("keyDown", "t", "KeyT")
+            await asyncio.sleep(0.3)  # long enough for the loop to see it
+            await tab.key("keyUp", "t", "KeyT")
+            await page.until(lambda: page.status["manner"] == "arm, axes of the camera")
+            await tab.click("#record")
+            await page.in_mode("recording")
+            # From the front, opposite to the robot, its left is on the right; from behind, where it looks, on the left.
+            for view, left_of_the_robot in (("front", 1), ("behind", -1)):
+                await tab.value(
+                    f"[...document.querySelectorAll('#views button')].find(b => b.textContent === '{view}').click()"
+                )
+                await asyncio.sleep(1.5)  # the view flies there
+                await page.ready()
+                await tab.value("void (window.stick = [0.6, 0, 0, 0])")
+                await page.moves(1, left_of_the_robot)
+                await tab.value("void (window.stick = [0, 0, 0, 0])")
+                await page.rests()
+            await tab.click("#stop-deck")
+            await page.in_mode("review")
+            await tab.click("#keep")
+            await page.in_mode("idle")
+            assert tab.complaints == []
+
+    asyncio.run(test())
+    (path,) = tmp_path.glob("*.mcap")
+    demo = load_demo(path)
+    assert demo.drive is not None
+    seen = {command.camera_xyzw for command in demo.drive.commands if command.camera_xyzw is not None}
+    assert len(seen) > 1
+    assert check_replay(demo).max_error == 0.0

@@ -21,7 +21,7 @@ def things(height: float) -> list[Obstacle]:
 def test_bounds_hold_and_distances_are_those_of_the_collision_model(name: str) -> None:
     robot = load_robot(name)
     collision, around = CollisionModel(robot, things(-0.1)), things(-0.1)
-    pairs = NearPairs(collision)
+    pairs = NearPairs(robot, around)
     track, rng = pairs.track(), np.random.default_rng(3)
     everything, q, base = np.arange(len(pairs.names)), robot.home, robot.pose_base_in_world
     for step in range(60):
@@ -35,7 +35,6 @@ def test_bounds_hold_and_distances_are_those_of_the_collision_model(name: str) -
             track.shrink(pairs.place(around, {}))
             collision = CollisionModel(robot, around)
         collision.place_base(base)
-        pairs.home(base)
         track.move(pairs.positions(q, openings), base)
         bounds = track.bounds.copy()
         distances = track.refine(everything)
@@ -47,7 +46,7 @@ def test_bounds_hold_and_distances_are_those_of_the_collision_model(name: str) -
 @pytest.mark.parametrize("name", ["three_dof", "baxter", "mico_segway"])
 def test_gradients_are_those_of_differences(name: str) -> None:
     robot = load_robot(name)
-    pairs = NearPairs(CollisionModel(robot, things(0.0)[1:]))
+    pairs = NearPairs(robot, things(0.0)[1:])
     base, rng = robot.pose_base_in_world, np.random.default_rng(0)
     q = np.clip(robot.home + rng.normal(0.0, 0.1, len(robot.home)), robot.lower + 0.01, robot.upper - 0.01)
     track = pairs.track()
@@ -80,7 +79,7 @@ def test_gradients_are_those_of_differences(name: str) -> None:
 def test_which_pairs_may_touch() -> None:
     robot = load_robot("baxter")
     cup = Obstacle("cup", "cylinder", (0.03, 0.1), Pose(np.zeros(3), LEVEL))
-    pairs = NearPairs(CollisionModel(robot, things(0.0), {"right": [cup]}))
+    pairs = NearPairs(robot, things(0.0), {"right": [cup]})
     allowed = {frozenset(names) for names, may in zip(pairs.names, pairs.contacts, strict=True) if may}
     assert frozenset(("l_gripper_l_finger", "ball")) in allowed
     assert frozenset(("cup", "table")) in allowed

@@ -43,6 +43,10 @@ def press(mapping: DriveMapping, *buttons: str) -> tuple[tuple[str, str], ...]:
     return tuple((event.name, event.detail) for event in mapping.take_events())
 
 
+def wish_fault(mapping: DriveMapping, **controls: float) -> str:
+    return mapping.command(GamepadState.from_controls(**controls)).fault
+
+
 def wish(mapping: DriveMapping, **controls: float) -> ArmWish:
     command = mapping.command(GamepadState.from_controls(**controls))
     assert command.fault == ""
@@ -274,6 +278,49 @@ def test_losing_the_device_with_a_button_held_is_no_release_of_it() -> None:
     mapping.read(DeviceReading(RESTING, 1.0, False, "pad"), 1.1)
     mapping.read(DeviceReading(RESTING, 2.0, True, "pad"), 2.0)
     assert mapping.take_events() == ()
+
+
+def test_buttons_that_are_down_when_the_device_is_back_do_nothing_until_they_were_let_go() -> None:
+    mapping = make("baxter")
+    mapping.stop()
+    mapping.read(DeviceReading(RESTING, 1.0, False, "pad"), 1.0)
+    down = GamepadState.from_controls(start=1.0, a=1.0, back=1.0, left_bumper=1.0)  # under another hand, perhaps
+    for _ in range(3):
+        assert mapping.read(DeviceReading(down, 2.0, True, "pad"), 2.0).stop
+    mapping.read(DeviceReading(RESTING, 2.1, True, "pad"), 2.1)
+    assert mapping.take_events() == ()
+    start = GamepadState.from_controls(start=1.0)
+    assert not mapping.read(DeviceReading(start, 2.2, True, "pad"), 2.2).stop  # pressed now, it is meant
+    mapping.read(DeviceReading(RESTING, 2.3, True, "pad"), 2.3)
+    mapping.distrust()
+    for _ in range(2):
+        assert mapping.command(GamepadState.from_controls(a=1.0)).arms["left"].gripper == "keep"
+    mapping.command(RESTING)
+    assert wish(mapping, a=1.0).gripper == "close"
+
+
+def test_a_trigger_that_is_held_when_the_device_is_back_must_be_let_go() -> None:
+    mapping = make("baxter")
+    mapping.distrust()
+    for value in (1.0, 0.6, 0.4):  # also on its way back
+        assert "let go of the sticks first: right_trigger" in wish_fault(mapping, right_trigger=value)
+    assert wish_fault(mapping) == ""
+
+
+def test_a_stop_that_is_down_when_the_device_is_back_stops() -> None:
+    mapping = make("baxter")
+    mapping.distrust()
+    assert mapping.command(GamepadState.from_controls(guide=1.0)).stop
+    assert mapping.command(RESTING).stop
+
+
+@pytest.mark.parametrize("bad", [{"left_x": math.nan}, {"right_y": -7.0}, {"a": 2.0}])
+def test_the_stop_of_a_gamepad_that_cannot_be_trusted_is_heard_and_stays(bad: dict[str, float]) -> None:
+    mapping = make("baxter")
+    command = mapping.command(GamepadState.from_controls(guide=1.0, **bad))
+    assert command.stop and command.fault
+    assert [event.name for event in mapping.take_events()] == ["stop"]
+    assert mapping.command(RESTING).stop
 
 
 def test_readings_carry_age_and_loss() -> None:

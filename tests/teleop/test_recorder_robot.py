@@ -123,7 +123,7 @@ def test_events_are_noticed_once(tmp_path: Path) -> None:
         (3, "stop", "emergency stop", ""),
         (3, "safety", "stopped: emergency stop", ""),
         (4, "stop", "emergency stop released", ""),
-        (4, "device", "lost: input is older than 0.1 s", ""),
+        (4, "device", "lost: input is older than 0.1 s; the last input came 4 ms before", ""),
         (4, "gripper", "closes", "left"),
         (5, "gripper", "opens", "left"),
         (63, "safety", "ok", ""),  # a quarter of a second after the stop

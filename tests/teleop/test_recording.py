@@ -1,10 +1,12 @@
+import os
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 import pytest
 
-from teleop import GamepadMapping, GamepadState, Recorder, TeleopError, check_replay, load_demo
+from teleop import GamepadMapping, GamepadState, Recorder, TeleopError, check_replay, disk_writer, load_demo
 from teleop.recording import Recording
 from teleop.session import Session
 from tests.teleop.test_disk_writer import files_at_most
@@ -138,6 +140,60 @@ def test_each_button_says_when_it_makes_no_sense(table: Table, tmp_path: Path) -
     assert load_demo(tmp_path / "demo_0001.mcap").complete
 
 
+def test_nothing_that_is_said_after_the_end_waits_for_the_disk(
+    table: Table, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The control loop calls all of this: while the disk hangs, every call returns, and the next demo can begin."""
+    real, answers = os.write, Event()
+
+    def hangs(file: int, data: bytes) -> int:
+        answers.wait()
+        return real(file, data)
+
+    recording = Recording(tmp_path, table.begin)
+    path = recording.start()
+    table.drive(recording, 50)
+    monkeypatch.setattr(disk_writer.os, "write", hangs)
+    recording.stop()
+    recording.say("pushed")
+    recording.label("failure")
+    recording.label("success", "after all")
+    recording.keep(wait=False)
+    table.drive(recording, 50)
+    assert (recording.state, recording.poll()) == ("idle", "")
+    answers.set()
+    recording.settle()
+    assert recording.poll() == ""
+    demo = load_demo(path)
+    assert demo.complete
+    assert [(each.text, each.when, each.step) for each in demo.sentences] == [("pushed", "after", 49)]
+    assert demo.outcome is not None
+    assert (demo.outcome.outcome, demo.outcome.note) == ("success", "after all")
+    assert [(each.kind, each.text) for each in demo.events] == [("record", "ended")]
+
+
+def test_a_disk_that_fills_up_after_the_end_is_told(table: Table, tmp_path: Path) -> None:
+    for kept in (False, True):
+        recording = Recording(tmp_path, table.begin)
+        path = recording.start()
+        table.drive(recording, 20)
+        recorder = recording.recorder
+        assert recorder is not None
+        recording.stop()
+        recorder.sync()
+        with files_at_most(path.stat().st_size):
+            recording.say("x" * 400)
+            if kept:
+                recording.keep(wait=False)
+            told = ""
+            while not told:
+                told = recording.poll()
+        assert f"{path.name}: cannot be written on: File too large" in told
+        assert recording.state == "idle"
+        with pytest.warns(UserWarning, match="ends early"):
+            assert len(load_demo(path).inputs) == 20
+
+
 def test_a_full_disk_ends_the_recording_and_not_the_control(table: Table, tmp_path: Path) -> None:
     recording = Recording(tmp_path, table.begin)
     with files_at_most(60_000):
@@ -156,4 +212,6 @@ def test_a_full_disk_ends_the_recording_and_not_the_control(table: Table, tmp_pa
     with pytest.warns(UserWarning, match="ends early"):
         demo = load_demo(path)
     assert len(demo.inputs) >= steps - 240
+    kept = float(told.split("until about ")[1].split(" s")[0])
+    assert kept == pytest.approx(len(demo.inputs) / 240, abs=0.051)  # told to a tenth
     assert check_replay(demo).max_error == 0.0

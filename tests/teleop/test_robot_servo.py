@@ -82,7 +82,9 @@ def box(name: str, centre: tuple[float, ...], *size: float) -> Obstacle:
         (BAXTER, "left", (0.0, 0.0, -0.1), 0.1),
         (MICO, "arm", (0.0, 0.05, 0.0), 0.3),
         (MICO, "arm", (0.0, -0.05, 0.0), 0.3),
+        (MICO, "arm", (0.0, -0.3, 0.0), 0.3),  # slowed by velocity limits
         (THREE_DOF, "arm", (0.0, 0.15, 0.0), 0.4),
+        (THREE_DOF, "arm", (0.3, 0.0, 0.0), 0.3),  # slowed by the elbow's end
     ],
 )
 def test_axes_that_are_not_commanded_do_not_drift(
@@ -138,6 +140,18 @@ def test_camera_axes_are_forward_left_and_up_in_the_picture() -> None:
     command = DriveCommand({"left": ArmWish((0.01, 0.02, 0.03, 0.0, 0.0, 0.0), "camera")})
     result = RobotServo(BAXTER).step(command, view, DT)
     np.testing.assert_allclose(result.arms["left"].asked[:3], [-0.02, 0.03, -0.01], atol=1e-12)
+
+
+def test_the_picture_that_the_person_sees_goes_before_the_robots_camera() -> None:
+    from_the_front = (0.5, 0.5, -0.5, -0.5)  # x right is the world's y, y down is -z, z forward is -x
+    view = ServoView(BAXTER.home, np.zeros(14), {}, camera_xyzw=np.array([1.0, 0.0, 0.0, 0.0]))
+    wish = ArmWish((0.01, 0.02, 0.03, 0.0, 0.0, 0.0), "camera")
+    result = RobotServo(BAXTER).step(DriveCommand({"left": wish}, camera_xyzw=from_the_front), view, DT)
+    np.testing.assert_allclose(result.arms["left"].asked[:3], [-0.01, -0.02, 0.03], atol=1e-12)
+    crooked = DriveCommand({"left": wish}, camera_xyzw=(0.5, 0.5, 0.5, 0.6))
+    refused = RobotServo(BAXTER).step(crooked, view, DT)
+    assert refused.arms["left"].reason is DriveReason.BAD_INPUT
+    assert "orientation of the picture is (0.5, 0.5, 0.5, 0.6)" in refused.arms["left"].detail
 
 
 def test_a_single_joint_is_jogged_alone_to_its_end_and_back() -> None:
@@ -214,6 +228,37 @@ def test_singular_postures_are_approached_slowly_and_left_at_once() -> None:
     driven.check_limits()
 
 
+@pytest.mark.parametrize(
+    ("robot", "arm", "twist", "reason"),
+    [
+        (BAXTER, "left", (0.4, 0.0, 0.0), DriveReason.SINGULARITY),
+        (MICO, "arm", (0.0, 0.0, 0.4), DriveReason.SINGULARITY),
+        (MICO, "arm", (0.4, 0.0, 0.0), DriveReason.SINGULARITY),
+        (THREE_DOF, "arm", (0.4, 0.0, 0.0), DriveReason.POSITION_LIMIT),
+    ],
+)
+def test_a_fast_motion_stops_on_its_line_before_a_singular_posture_or_a_joints_end(
+    robot: RobotModel, arm: str, twist: tuple[float, ...], reason: DriveReason
+) -> None:
+    driven = Driven(robot)
+    start, along, where = driven.tool(arm).position, np.array(twist) / 0.4, robot.slice_of(arm)
+    rows = 3 if robot is THREE_DOF else 6
+    conditions = []
+
+    def look(result: RobotServoResult) -> bool:
+        moved = driven.tool(arm).position - start
+        assert np.linalg.norm(moved - (moved @ along) * along) < 1e-3  # as promised of straight lines
+        conditions.append(condition_number(robot.arms[arm].jacobian(driven.q[where])[:rows], 0.3))
+        return result.arms[arm].reason is reason and bool(np.abs(result.arms[arm].executed).max() < 1e-3)
+
+    last = driven.go(move(arm, *twist), 8.0, look)
+    assert last.arms[arm].reason is reason
+    assert max(conditions) < 30.1  # the estimate of the condition number is right to a thousandth
+    back = driven.go(move(arm, *(-np.array(twist) / 8.0).tolist()), 1.0)
+    np.testing.assert_allclose(back.arms[arm].executed[:3], -along * 0.05, atol=2e-3)
+    driven.check_limits()
+
+
 def test_an_arm_keeps_its_distance_and_leaves_freely() -> None:
     tool = BAXTER.arms["left"].forward_kinematics(BAXTER.home[BAXTER.slice_of("left")]).position
     wall = box("wall", (float(tool[0]), float(tool[1]) - 0.25, float(tool[2])), 0.3, 0.02, 0.3)
@@ -271,6 +316,26 @@ def test_a_base_stops_before_a_pillar_and_drives_back() -> None:
     back = driven.go(DriveCommand(base=(-0.3, 0.0)), 1.5)
     assert back.base_twist[0] == pytest.approx(-0.3)
     driven.check_limits()
+
+
+def test_a_base_that_is_hemmed_in_has_a_way_out() -> None:
+    base = MICO.pose_base_in_world.position
+    x, y, z = (float(value) for value in base)
+    walls = (box("before", (x + 0.95, y, z + 0.3), 0.1, 2.0, 0.6), box("left", (x, y + 0.55, z + 0.3), 1.6, 0.1, 0.6))
+    driven = Driven(MICO, walls)
+    for into in ((0.5, 0.0), (0.0, 1.0), (0.5, 1.0), (0.5, -1.0)):  # until each stands against something
+        last = driven.go(DriveCommand(base=into), 4.0)
+    assert last.base_reason is DriveReason.COLLISION
+    assert np.abs(last.base_twist).max() < 0.1
+    stand, q = driven.base, driven.q
+    freed = []
+    for out in ((-0.3, 0.0), (0.0, 0.5), (0.0, -0.5), (0.3, 0.0)):
+        driven.servo.reset()
+        driven.base, driven.q = stand, q
+        driven.go(DriveCommand(base=out), 0.5)
+        if np.linalg.norm(driven.base.position - stand.position) > 0.02:
+            freed.append(out)
+    assert (-0.3, 0.0) in freed  # backing off leads away from the wall before it
 
 
 def test_things_may_be_moved_and_held_while_it_drives() -> None:

@@ -37,6 +37,8 @@ def test_messages_are_read() -> None:
         ({"enabled": 1}, "enabled"),
         ({"at": math.nan}, "at"),
         ({"at": math.inf}, "at"),
+        ({"silence": -1.0}, "silence"),
+        ({"silence": math.inf}, "silence"),
         ({"seq": 1.5}, "seq"),
         ({"token": "x"}, "token"),
     ],

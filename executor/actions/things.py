@@ -1,0 +1,45 @@
+"""Where the things of a world are: poses, corners, what bears them."""
+
+import numpy as np
+
+from robots.kinematics import rotation_matrix
+from robots.pose import FloatArray, Pose
+from twin import World, WorldState
+
+
+def pose_of(state: WorldState, object_id: int) -> Pose:
+    """Pose of an object that the scene has, in the world."""
+    return next(each.pose_object_in_world for each in state.objects if each.id == object_id)
+
+
+def corners_of(world: World, object_id: int, pose: Pose | None = None) -> FloatArray:
+    """Corners of an object's convex parts in the world, (n, 3) [m], where it is or at another pose.
+
+    Raises:
+        TwinError: There is no such object.
+    """
+    model = world.model_of(object_id)
+    pose = pose_of(world.state(), object_id) if pose is None else pose
+    corners = np.concatenate([part.vertices for part in model.parts])
+    return np.asarray(corners @ rotation_matrix(pose.orientation_xyzw).T + pose.position)
+
+
+def clear_below(world: World, object_id: int, pose: Pose | None = None) -> float:
+    """How far an object's underside is above what would bear it [m]: the table, or the highest thing under its middle.
+
+    Raises:
+        TwinError: There is no such object.
+    """
+    corners = corners_of(world, object_id, pose)
+    middle = (corners[:, :2].min(axis=0) + corners[:, :2].max(axis=0)) / 2
+    underside = float(corners[:, 2].min())
+    support = 0.0
+    for other in world.state().objects:
+        if other.id == object_id:
+            continue
+        its = corners_of(world, other.id, other.pose_object_in_world)
+        inside = np.all((its[:, :2].min(axis=0) <= middle) & (middle <= its[:, :2].max(axis=0)))
+        top = float(its[:, 2].max())
+        if inside and top < underside + 0.01:
+            support = max(support, top)
+    return underside - support

@@ -1,0 +1,151 @@
+"""The `leeds` collection: a Baxter picks up, puts down and moves each of 51 objects four times (thesis 6.2.2)."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from executor.collections import rules
+from executor.collections.attempt import Attempt
+from executor.collections.performance import Judge, Shown, perform
+from executor.collections.table_goals import Goal, reached
+from executor.collections.table_plans import planned
+from executor.collections.truths import objects_of
+from teleop.annotators import TableAction, TableFacts, Thing, tell_table
+from twin import World
+from twin.objects import CATALOGUES
+from twin.scene_spec import SceneSpec
+from twin.state import WorldState
+from twin.tabletop_scene import random_tabletop
+
+ACTIONS: tuple[TableAction, ...] = ("pick up", "put down", "move")
+OBJECTS = CATALOGUES["tabletop"]
+TIMES = 4
+LEEDS_COUNT = TIMES * len(OBJECTS)
+"""204 demos."""
+SENTENCES = 5
+"""Sentences with a demo in each language; every 51st has one more, 1,024 in all."""
+ROLLING = ("apple", "pear", "banana", "marker", "cylinder")
+"""What may roll when it is let go."""
+FARTHER = 0.06
+"""What was moved is so far from where it was, at least [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class LeedsCollection:
+    """What the collection is made of.
+
+    Attributes:
+        folder: Where the demos go; it must be there.
+        seed: Seed of everything.
+        languages: Languages of the sentences.
+    """
+
+    folder: Path
+    seed: int
+    languages: tuple[str, ...] = ("en",)
+
+    @property
+    def name(self) -> str:
+        """`leeds`."""
+        return "leeds"
+
+    def shows(self, number: int) -> tuple[TableAction, str]:
+        """The action and the object of a demo: all objects follow each other four times, shuffled each time."""
+        turn, place = divmod(number, len(OBJECTS))
+        order = np.random.default_rng([self.seed, turn]).permutation(len(OBJECTS))
+        return ACTIONS[number % len(ACTIONS)], OBJECTS[int(order[place])]
+
+    def attempt(self, number: int, attempt: int, path: Path) -> Attempt:
+        """Try to record a demo."""
+        action, thing = self.shows(number)
+        rng = np.random.default_rng([self.seed, number, attempt])
+        scene = _scene(rng, thing, self.seed)
+        target = next(each.id for each in scene.objects if each.model == thing)
+        with World(scene) as world:
+            plan = planned(world, action, target, rng)
+            if plan is None:
+                return Attempt(action, "out of reach")
+            facts = _facts(scene, action, target, plan.goal)
+            count = SENTENCES + (number % len(OBJECTS) == 0)
+            told = [
+                each
+                for index, language in enumerate(self.languages)
+                for each in tell_table(facts, count, language, np.random.default_rng([self.seed, number, 7, index]))
+            ]
+            spoken = [(each.text, each.language) for each in told]
+            judge = _judge(world, action, target, plan.goal)
+            reason = perform(world, plan.demo, judge, path, lambda _: spoken, rng)
+            if reason:
+                return Attempt(action, reason, simulated=world.time)
+            truth = {
+                "collection": "leeds",
+                "action": action,
+                "number": number,
+                "attempt": attempt,
+                "arm": plan.demo.arm,
+                "target": target,
+                "destination": _destination(plan.goal, world.state(), target),
+                "objects": objects_of(scene),
+                "sentences": [each.truth() for each in told],
+            }
+            return Attempt(action, "", truth, world.time)
+
+
+def _scene(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:
+    """A random scene with an object among others; which number it has says nothing."""
+    scene = random_tabletop(rng, seed=seed, including=thing)
+    order = rng.permutation(len(scene.objects)).tolist()
+    objects = tuple(scene.objects[old].model_copy(update={"id": new}) for new, old in enumerate(order))
+    return scene.model_copy(update={"objects": objects})
+
+
+def _facts(scene: SceneSpec, action: TableAction, target: int, goal: Goal | None) -> TableFacts:
+    things = tuple(
+        Thing(each.id, each.shape, each.colour, each.position[0], each.position[1]) for each in scene.objects
+    )
+    mine = next(each for each in things if each.id == target)
+    return TableFacts(action, mine, things, None if goal is None else goal.destination, action == "put down")
+
+
+def _judge(world: World, action: TableAction, target: int, goal: Goal | None) -> Judge:
+    model = world.model_of(target)
+
+    def rule(facts: rules.Facts) -> str:
+        if goal is None:
+            return rules.picked_up(facts)
+        return _put(facts, action, model.shape) or reached(facts, goal, world)
+
+    judge = rules.judge_of(rule, model)
+
+    def judged(shown: Shown) -> str:
+        return judge(shown)
+
+    return judged
+
+
+def _put(facts: rules.Facts, action: TableAction, shape: str) -> str:
+    """Whether a thing was put down as the action says."""
+    if facts.held[-1]:
+        return "still held at the end"
+    if facts.held[0] != (action == "put down"):
+        return "held otherwise at the start than the action says"
+    if action == "move" and facts.moved < FARTHER:
+        return f"moved {1000 * facts.moved:.0f} mm only"
+    return "toppled" if shape not in ROLLING and facts.tilted() else ""
+
+
+def _destination(goal: Goal | None, end: WorldState, target: int) -> dict[str, object] | None:
+    """Where a thing went, for the sidecar."""
+    if goal is None:
+        return None
+    said = goal.destination
+    position = rules.place_of(end, target).position.tolist()
+    kind = "part" if said.relation is None else "in or on" if said.relation in ("in", "on") else "beside"
+    return {
+        "kind": kind,
+        "place": None if said.place is None else list(said.place),
+        "relation": said.relation,
+        "reference": said.reference,
+        "position": position,
+    }

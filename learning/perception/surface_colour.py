@@ -1,0 +1,51 @@
+"""The colour of a thing, whatever its shades: the well-lit pixels of its main colour."""
+
+import numpy as np
+
+from robots.pose import FloatArray
+
+MAIN_COLOUR = 0.08
+"""Distance in chromaticity from the median that is still the main colour: caps and labels are not."""
+CHROMA_NOISE = 8.0
+"""How much farther in the dark, over the sum of a pixel's channels."""
+WELL_LIT = 0.6
+"""Part of the pixels of the main colour that are darker than the well-lit ones."""
+MOST_PIXELS = 200
+"""About so many pixels are looked at."""
+
+
+def surface_colour(colours: FloatArray) -> FloatArray:
+    """Red, green, blue, (3,) of 255.
+
+    Args:
+        colours: Pixels of one thing, at least one, (n, 3) of 255.
+    """
+    colours = colours[:: max(len(colours) // MOST_PIXELS, 1)]
+    total = colours.sum(axis=1) + 1.0
+    chroma = colours[:, :2] / total[:, None]
+    off = np.abs(chroma - np.sort(chroma, axis=0)[len(chroma) // 2]).sum(axis=1)
+    main = off < MAIN_COLOUR + CHROMA_NOISE / total
+    if main.sum() < 0.2 * len(colours):
+        main = np.ones(len(colours), dtype=bool)
+    order = np.argsort(total[main])
+    well_lit = colours[main][order[int(WELL_LIT * len(order)) :]]
+    return np.asarray(np.sort(well_lit, axis=0)[len(well_lit) // 2])
+
+
+def hsl_of(rgb: FloatArray) -> FloatArray:
+    """Hue, saturation, lightness in 0..1 of colours (..., 3) of 255; grey has hue 0."""
+    values = np.clip(np.asarray(rgb, dtype=float) / 255.0, 0.0, 1.0)
+    high, low = values.max(axis=-1), values.min(axis=-1)
+    span = high - low
+    lightness = (high + low) / 2
+    safe = np.where(span > 0, span, 1.0)
+    room = 1.0 - np.abs(2 * lightness - 1.0)
+    saturation = np.where(room > 0, span / np.where(room > 0, room, 1.0), 0.0)
+    red, green, blue = np.moveaxis(values, -1, 0)
+    hue = np.where(
+        high == red,
+        (green - blue) / safe % 6.0,
+        np.where(high == green, (blue - red) / safe + 2.0, (red - green) / safe + 4.0),
+    )
+    hue = np.where(span > 0, hue / 6.0 % 1.0, 0.0)
+    return np.stack((hue, np.clip(saturation, 0.0, 1.0), lightness), axis=-1)
