@@ -34,9 +34,11 @@ INACCURACY = 2e-6
 """Of coal's distances, which it ends its search with [m]: bounds stay so far below."""
 SPARE = 0.05
 """Pairs whose balls are so much farther apart than need be are not looked at closer [m]."""
+LITTLE = 0.03
+"""A bound that is so much lower than need be may be so because it is old [m]."""
 SLANT = 0.02
 """Part of a motion that may be along a distance though it seems to be across it: directions are no more exact."""
-SIZES = 7
+SIZES = 6
 """How many sizes stand at the beginning of what is packed."""
 
 
@@ -101,7 +103,7 @@ class Scene(NamedTuple):
 def packed(scene: Scene) -> tuple[IntArray, FloatArray]:
     """All of a scene in two arrays, whole numbers and others."""
     c, s = scene.reach.shape
-    sizes = [len(scene.parent), len(scene.solid), len(scene.points), c, s, len(scene.first), 0]
+    sizes = [len(scene.parent), len(scene.solid), len(scene.points), c, s, len(scene.first)]
     whole = np.concatenate((sizes, *(each.ravel() for each in scene[:10])))
     return whole.astype(np.int64), np.concatenate([each.ravel() for each in scene[10:]])
 
@@ -425,7 +427,9 @@ def _gap(
     b: int,
     poses: FloatArray,
     enough: float,
+    fair: float,
     hopeless: float,
+    spare: float,
     corners: FloatArray,
 ) -> float:
     """What the distance of a pair is at least [m]; negative where no plane was found between the two.
@@ -440,7 +444,9 @@ def _gap(
         b: Its second.
         poses: Of all shapes, (g, 12).
         enough: The search ends when at least so much is sure [m],
+        fair: or when the first plane that is looked at shows this [m],
         hopeless: or when they are nearer than this [m].
+        spare: So much more than enough is enough for not looking closer than at the balls around them [m].
         corners: Room, (5, 3).
     """
     ax, ay, az = _centre(form, a, poses)
@@ -448,7 +454,7 @@ def _gap(
     x, y, z = x - ax, y - ay, z - az
     length = math.sqrt(x * x + y * y + z * z)
     best = length - form[a, 6] - form[b, 6] - INACCURACY
-    if best >= enough + SPARE:
+    if best >= enough + spare:
         return float(best)
     u, v, w = plane[k, 0], plane[k, 1], plane[k, 2]
     c = a if form[a, 6] > form[b, 6] else b
@@ -471,7 +477,11 @@ def _gap(
             plane[k, 0] = poses[c, 0] * x + poses[c, 3] * y + poses[c, 6] * z
             plane[k, 1] = poses[c, 1] * x + poses[c, 4] * y + poses[c, 7] * z
             plane[k, 2] = poses[c, 2] * x + poses[c, 5] * y + poses[c, 8] * z
-        if best >= enough or (count > 0 and found > (1.0 - CONVERGED) * length - 1.1 * INACCURACY):
+        if (
+            best >= enough
+            or (count == 0 and best >= fair)
+            or (count > 0 and found > (1.0 - CONVERGED) * length - 1.1 * INACCURACY)
+        ):
             break
         corners[count, 0], corners[count, 1], corners[count, 2] = u, v, w
         count = _nearest(corners, count + 1)
@@ -490,7 +500,12 @@ def _of_pairs(scene: Scene) -> tuple[IntArray, FloatArray, FloatArray, FloatArra
 
 @part
 def _sift(
-    scene: Scene, poses: FloatArray, bounds: FloatArray, exact: BoolArray, which: IntArray, thresholds: FloatArray
+    scene: Scene,
+    poses: FloatArray,
+    bounds: FloatArray,
+    exact: BoolArray,
+    which: IntArray,
+    thresholds: FloatArray,
 ) -> IntArray:
     """See `sift`."""
     solid, form, points, plane, first, second = _of_pairs(scene)
@@ -499,7 +514,19 @@ def _sift(
     for k in which:
         if not exact[k]:
             found = _gap(
-                solid, form, points, plane, k, first[k], second[k], poses, thresholds[k], thresholds[k], corners
+                solid,
+                form,
+                points,
+                plane,
+                k,
+                first[k],
+                second[k],
+                poses,
+                thresholds[k],
+                thresholds[k],
+                thresholds[k],
+                SPARE,
+                corners,
             )
             bounds[k] = max(bounds[k], found)
         if bounds[k] < thresholds[k]:
@@ -636,7 +663,7 @@ def approached(
     for k in which:
         a, b = first[k], second[k]
         plane[0, :] = 0.0
-        apart = _gap(solid, form, points, plane, 0, a, b, poses, np.inf, -np.inf, corners)
+        apart = _gap(solid, form, points, plane, 0, a, b, poses, np.inf, np.inf, -np.inf, 0.0, corners)
         if apart > 0.0:
             c = a if form[a, 6] > form[b, 6] else b
             u, v, w = plane[0, 0], plane[0, 1], plane[0, 2]
@@ -674,60 +701,86 @@ def _travel(matrix: FloatArray, here: FloatArray, way: FloatArray) -> tuple[Floa
 def _sift_way(
     scene: Scene,
     which: IntArray,
+    now_poses: FloatArray,
     start: FloatArray,
+    start_exact: BoolArray,
+    end_poses: FloatArray,
     end: FloatArray,
+    end_exact: BoolArray,
     along: FloatArray,
     bases: FloatArray,
     sums: FloatArray,
     least: FloatArray,
-) -> IntArray:
-    """Pairs of which bounds do not tell that they keep distances all along a way.
+) -> tuple[IntArray, IntArray, IntArray]:
+    """See `look_ahead` for all of it.
 
-    Args:
-        scene: The scene.
-        which: Pairs to look at, (w,).
-        start: What distances are at least where the way begins, (k,) [m].
-        end: What they are at least where it ends, (k,) [m].
-        along: Positions of all joints behind each of m stretches of the way, (m, nv).
-        bases: Poses of the base then, (m, 12).
-        sums: Of levers for the first 0 to m stretches, (m + 1, (c + 1) (s + 1)).
-        least: Distances to keep, (k,) [m].
+    The way is halved, and halved again, as often as it takes. What bounds say of its ends is mostly good enough for
+    that, so that it is only improved where a little is missing, or where nothing else helps.
     """
     solid, form, points, plane, first_of, second_of = _of_pairs(scene)
-    m = along.shape[0]
-    joint_poses, poses = np.empty((scene.parent.size, 12)), np.empty((m, scene.solid.shape[0], 12))
-    placed, corners = np.zeros(m, dtype=np.bool_), np.empty((5, 3))
-    bounds, gone = np.empty(m + 1), np.zeros(m + 1)
+    m, corners = along.shape[0], np.empty((5, 3))
+    joint_poses, poses = np.empty((scene.parent.size, 12)), np.empty((m, solid.shape[0], 12))
+    placed, bounds = np.zeros(m, dtype=np.bool_), np.empty(m + 1)
     firsts, lasts = np.empty(m + 1, dtype=np.int64), np.empty(m + 1, dtype=np.int64)
-    left = np.empty(which.size, dtype=np.int64)
-    unsure = 0
+    near, left, where = np.empty_like(which), np.empty_like(which), np.empty_like(which)
+    ends = unsure = 0
     for k in which:
-        for stretch in range(1, m + 1):
-            gone[stretch] = sums[stretch, scene.one[k]] + sums[stretch, scene.other[k]]
-        bounds[0], bounds[m] = start[k], end[k]
-        firsts[0], lasts[0], waiting = 0, m, 1
-        while waiting > 0:
-            waiting -= 1
-            first, last = firsts[waiting], lasts[waiting]
-            if bounds[first] + bounds[last] - (gone[last] - gone[first]) >= 2.0 * least[k]:
-                continue
-            if last - first == 1:
-                left[unsure] = k
+        a, b, one, other, keep = first_of[k], second_of[k], scene.one[k], scene.other[k], least[k]
+        whole = sums[m, one] + sums[m, other]
+        missing = 2.0 * keep + whole - start[k] - end[k]
+        for attempt in range(2):
+            again = attempt == 1
+            # What is known of the end must do for standing there, too.
+            if not end_exact[k] and (end[k] < keep or missing < LITTLE or again):
+                fair = np.inf if again else keep
+                found = _gap(
+                    *(solid, form, points, plane, k, a, b, end_poses), end[k] + missing, fair, keep, SPARE, corners
+                )
+                end[k] = max(end[k], found)
+            missing = 2.0 * keep + whole - start[k] - end[k]
+            if not start_exact[k] and missing > 0.0 and (missing < LITTLE or again):
+                fair = np.inf if again else keep
+                found = _gap(
+                    *(solid, form, points, plane, k, a, b, now_poses), start[k] + missing, fair, keep, SPARE, corners
+                )
+                start[k] = max(start[k], found)
+            if end[k] < keep:
+                break
+            bounds[0], bounds[m] = start[k], end[k]
+            firsts[0], lasts[0], waiting = 0, m, 1
+            failed = -1
+            while waiting > 0 and failed < 0:
+                waiting -= 1
+                first, last = firsts[waiting], lasts[waiting]
+                behind, ahead = sums[first, one] + sums[first, other], sums[last, one] + sums[last, other]
+                if bounds[first] + bounds[last] - (ahead - behind) >= 2.0 * keep:
+                    continue
+                if last - first == 1:
+                    failed = first
+                    continue
+                middle = (first + last) // 2
+                if not placed[middle]:
+                    placed[middle] = True
+                    _place(scene, along[middle - 1], bases[middle - 1], True, joint_poses, poses[middle])
+                between = sums[middle, one] + sums[middle, other]
+                enough = 2.0 * keep + max(between - behind - bounds[first], ahead - between - bounds[last])
+                bounds[middle] = _gap(
+                    *(solid, form, points, plane, k, a, b, poses[middle]), enough, enough, keep, 0.0, corners
+                )
+                firsts[waiting], lasts[waiting] = first, middle
+                firsts[waiting + 1], lasts[waiting + 1] = middle, last
+                waiting += 2
+            if failed < 0:
+                break
+            if again or (end_exact[k] and start_exact[k]):
+                left[unsure], where[unsure] = k, failed
                 unsure += 1
                 break
-            middle = (first + last) // 2
-            if not placed[middle]:
-                placed[middle] = True
-                _place(scene, along[middle - 1], bases[middle - 1], True, joint_poses, poses[middle])
-            needed = max(gone[middle] - gone[first] - bounds[first], gone[last] - gone[middle] - bounds[last])
-            enough = 2.0 * least[k] + needed
-            bounds[middle] = _gap(
-                solid, form, points, plane, k, first_of[k], second_of[k], poses[middle], enough, least[k], corners
-            )
-            firsts[waiting], lasts[waiting] = first, middle
-            firsts[waiting + 1], lasts[waiting + 1] = middle, last
-            waiting += 2
-    return left[:unsure]
+            missing = 1.0  # more than there is: improve what is known of both ends as far as it goes
+        if end[k] < keep:
+            near[ends] = k
+            ends += 1
+    return near[:ends], left[:unsure], where[:unsure]
 
 
 @compiled
@@ -749,7 +802,7 @@ def look_ahead(
     bounds: FloatArray,
     exact: BoolArray,
     least: FloatArray,
-) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+) -> tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray]:
     """Which pairs bounds do not show to keep distances at the end of a way, and along it.
 
     Half-way, a pair is at least so far apart: what both ends say, less what lies between.
@@ -774,8 +827,9 @@ def look_ahead(
         least: Distances to keep, (k,) [m].
 
     Returns:
-        Pairs that may be too near at the end; others that may pass too near; positions of all joints behind each
-        stretch, (m, nv); sums of levers for the first 0 to m stretches, (m + 1, (c + 1) (s + 1)).
+        Pairs that may be too near at the end; others that may pass too near, and a stretch for each, 0 to m - 1, on
+        which they may; positions of all joints behind each stretch, (m, nv); sums of levers for the first 0 to m
+        stretches, (m + 1, (c + 1) (s + 1)).
     """
     scene, m = _views(whole, numbers), way.shape[0]
     along, travel = _travel(matrix, here, way)
@@ -793,27 +847,16 @@ def look_ahead(
         bounds[k] = max(bounds[k], now_bounds[k] - gone - INACCURACY)
     _place(scene, along[m - 1], bases[m - 1], around, joint_poses, poses)
     _reach_here(scene, joint_poses, poses, reach)
-    which = _sift(scene, poses, bounds, exact, _below(bounds, needed), needed)
-    near, passing = np.empty(which.size, dtype=np.int64), np.empty(which.size, dtype=np.int64)
-    ends = passes = 0
-    for k in which:
-        if bounds[k] < least[k]:
-            near[ends] = k
-            ends += 1
-        else:
-            needed[k] = 2.0 * least[k] + end[scene.one[k]] + end[scene.other[k]] - bounds[k]
-            passing[passes] = k
-            passes += 1
-    which = passing[:0]
-    if passes > 0:
-        which = _sift(scene, now_poses, now_bounds, now_exact, passing[:passes], needed)
-    if which.size > 0 or ends > 0:
+    which, where = _below(bounds, needed), np.empty(0, dtype=np.int64)
+    near = which[:0]
+    if which.size > 0:
         for stretch in range(m):
             _sum_up(scene, farthest, travel[stretch], sums[stretch + 1])
             sums[stretch + 1] += sums[stretch]
-        if which.size > 0:
-            which = _sift_way(scene, which, now_bounds, bounds, along, bases, each, least)
-    return near[:ends], which, along, each
+        near, which, where = _sift_way(
+            *(scene, which, now_poses, now_bounds, now_exact, poses, bounds, exact), along, bases, each, least
+        )
+    return near, which, where, along, each
 
 
 @compiled

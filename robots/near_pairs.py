@@ -9,6 +9,7 @@ which of them happen to be known.
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
+from typing import overload
 
 import numpy as np
 
@@ -20,7 +21,33 @@ from .obstacle import FLOOR, Obstacle
 from .pair_track import PairTrack, angle_between
 from .pose import FloatArray, Pose
 
+KEPT = 16
+"""For so many gaps of the fingers what they add is kept."""
 _NOTHING: Mapping[str, Sequence[Obstacle]] = {}
+
+
+class PairNames(Sequence[tuple[str, str]]):
+    """The two names of each pair, put together when they are asked for: few of thousands are."""
+
+    def __init__(self, names: Sequence[str], firsts: Sequence[int], seconds: Sequence[int]) -> None:
+        """Take the names of all shapes, and the two shapes of each pair."""
+        self._names, self._firsts, self._seconds = names, firsts, seconds
+
+    def __len__(self) -> int:
+        """How many pairs there are."""
+        return len(self._firsts)
+
+    @overload
+    def __getitem__(self, index: int) -> tuple[str, str]: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[tuple[str, str]]: ...
+
+    def __getitem__(self, index: int | slice) -> tuple[str, str] | Sequence[tuple[str, str]]:
+        """The names of a pair, or of some."""
+        if isinstance(index, slice):
+            return PairNames(self._names, self._firsts[index], self._seconds[index])
+        return self._names[self._firsts[index]], self._names[self._seconds[index]]
 
 
 class NearPairs:
@@ -85,16 +112,15 @@ class NearPairs:
         self.scene = Scene(*unpacked(self.whole, self.numbers))
         self.version = 0
         self.firsts, self.seconds = first.tolist(), second.tolist()
-        named = [each.name for each in shapes]
-        self.names = [(named[a], named[b]) for a, b in zip(self.firsts, self.seconds, strict=True)]
+        self.names = PairNames([each.name for each in shapes], self.firsts, self.seconds)
         thing, touching = np.zeros(len(shapes), dtype=np.bool_), np.zeros(len(shapes), dtype=np.bool_)
         thing[len(self.own.shapes) :] = True
         touching[self.own.fingers] = True
         touching[len(self.own.shapes) : self.carried] = True
         self.contacts: BoolArray = (touching[first] & thing[second]) | (touching[second] & thing[first])
-        self._offsets: tuple[tuple[float, ...], FloatArray] | None = None
         self._columns = self.own.columns
         self.matrix = self._matrix()
+        self._still, self._added = self._open(), dict[tuple[float, ...], FloatArray]()
         self._row: tuple[Pose, FloatArray] | None = None
         self._rows: tuple[Pose, FloatArray] | None = None
 
@@ -132,12 +158,7 @@ class NearPairs:
 
     def positions(self, q: FloatArray, openings: Mapping[str, float]) -> FloatArray:
         """Positions (nv,) of all of Pinocchio's joints for driven ones (n,) and gaps of the fingers [m]."""
-        key = tuple(openings.get(arm, np.inf) for arm in self.robot.arms)
-        if self._offsets is None or self._offsets[0] != key:
-            # At home, since what mimics others is held to its own limits, which zero may be beyond.
-            home = self.robot.home
-            self._offsets = key, self._vector(self.robot.expand(home, openings)) - self.matrix @ home
-        return np.asarray(self.matrix @ q + self._offsets[1])
+        return np.asarray(self.matrix @ q + self._still + self._fingers(openings))
 
     def positions_after(self, positions: FloatArray, way: FloatArray) -> FloatArray:
         """Positions (nv,) where driven joints have gone a way (n,), or (n + 2,) with the base's."""
@@ -200,17 +221,17 @@ class NearPairs:
 
     def _made(self, shapes: Sequence[Shape], first: IntArray, second: IntArray) -> Scene:
         """All as arrays."""
-        chains = [self.own.chain(each) for each in shapes[: self.carried]]
+        chains = self.own.chains + [self.own.chain(each) for each in shapes[len(self.own.shapes) : self.carried]]
         size = self.carried + 1, max((len(each) for each in chains), default=0)
         chain, lever, reach = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=np.int64), np.zeros(size)
-        moved = np.zeros((len(shapes), self.own.model.nv), dtype=np.int64)
+        moved = np.zeros((self.carried, self.own.model.nv), dtype=np.int64)
         for row, links in enumerate(chains):
             where = row, slice(len(links))
             chain[where], lever[where], reach[where] = zip(*links, strict=True)
             moved[row, lever[row, 2 : len(links)]] = 1
         # The base and joints that carry both are the first ones of both chains; the base moves all but what is around.
-        common = 2 + np.einsum("ij,ij->i", moved[first], moved[second])
-        common = np.where(second >= self.carried, 0, common)
+        common, both = np.zeros(len(first), dtype=np.int64), np.flatnonzero(second < self.carried)
+        common[both] = 2 + (moved @ moved.T)[first[both], second[both]]
         stops, joints = np.cumsum([len(each.points) for each in shapes]).tolist(), self.own.joints
         starts = [0, *stops[:-1]]
         return Scene(
@@ -226,7 +247,7 @@ class NearPairs:
             other=np.minimum(second, self.carried) * (size[1] + 1) + common,
             joint_frame=joints.frame,
             joint_axis=joints.axis,
-            form=np.array([np.concatenate((each.size, each.ball)) for each in shapes]),
+            form=np.array([each.form for each in shapes]),
             frame=np.array([each.frame for each in shapes]),
             points=np.concatenate([each.points for each in shapes]),
             reach=reach,
@@ -238,11 +259,29 @@ class NearPairs:
         one, other = before.pose_obstacle_in_world, after.pose_obstacle_in_world
         return float(np.linalg.norm(one.position - other.position)) + self._reaches[index] * angle_between(one, other)
 
-    def _vector(self, joints: Mapping[str, float]) -> FloatArray:
-        vector = np.zeros(self.matrix.shape[0])
-        for name, value in joints.items():
+    def _fingers(self, openings: Mapping[str, float]) -> FloatArray:
+        """What fingers that are not open add to the positions of all joints, (nv,)."""
+        key = tuple(openings.get(name, arm.gripper.max_opening) for name, arm in self.robot.arms.items())
+        if key not in self._added:
+            if len(self._added) > KEPT:
+                self._added.clear()
+            told: dict[str, float] = {}
+            for arm, opening in zip(self.robot.arms.values(), key, strict=True):
+                told |= dict(zip(arm.gripper.joints, arm.gripper.joints_at(opening), strict=True))
+            told |= {each.joint: each.follow(told[each.source]) for each in self.robot.finger_mimic}
+            added = np.zeros(len(self._still))
+            for name, value in told.items():
+                added[self._columns[name]] = value - self._still[self._columns[name]]
+            self._added[key] = added
+        return self._added[key]
+
+    def _open(self) -> FloatArray:
+        """What is added to the positions of all joints, (nv,), while fingers are open."""
+        # At home, since what mimics others is held to its own limits, which zero may be beyond.
+        vector = np.zeros(len(self.matrix))
+        for name, value in self.robot.expand(self.robot.home, {}).items():
             vector[self._columns[name]] = value
-        return vector
+        return vector - self.matrix @ self.robot.home
 
     def _matrix(self) -> FloatArray:
         """How driven joints move all, (nv, n)."""

@@ -47,9 +47,8 @@ class Shape:
         joint: That carries it; 0 for what none does.
         frame: Its pose in the joint's frame, or in the world, (12,): rotation matrix, row by row, and position.
         kind: See `near_kernel`.
-        size: See `near_kernel.Scene`, (3,) [m].
+        form: See `near_kernel.Scene`, (7,) [m].
         points: Of a cloud, (p, 3) [m].
-        ball: Centre and radius of a ball around it, (4,) [m].
     """
 
     name: str
@@ -57,9 +56,13 @@ class Shape:
     joint: int
     frame: FloatArray
     kind: int
-    size: FloatArray
+    form: FloatArray
     points: FloatArray
-    ball: FloatArray
+
+    @property
+    def ball(self) -> FloatArray:
+        """Centre and radius of a ball around it, (4,) [m]."""
+        return self.form[3:]
 
     def reach(self) -> float:
         """How far its farthest point may be from the joint's origin [m]."""
@@ -76,6 +79,7 @@ class RobotShapes:
         joints: Its tree.
         columns: Which of all positions is that of each joint, by name.
         shapes: Its links' shapes.
+        chains: What moves each of them; see `chain`.
         pairs: Those that may not touch, (k, 2).
         hands: Which shapes belong to each arm's hand, and may touch what it holds.
         tools: The joint that carries each arm's tool, and the tool's pose there, (12,).
@@ -109,7 +113,9 @@ class RobotShapes:
         behind = {int(each) for name in fingers for each in self.model.subtrees[self.model.getJointId(name)]}
         self.fingers = [i for i, each in enumerate(self.shapes) if each.joint in behind]
         self._links = self._lengths()
+        self.chains = [self.chain(each) for each in self.shapes]
         self._known: dict[Hashable, Shape] = {}
+        self._standing: dict[int, tuple[Obstacle, Shape]] = {}
 
     def held(self, arm: str, thing: Obstacle) -> Shape:
         """The shape of a thing that an arm holds, its pose being in the tool's frame."""
@@ -119,7 +125,13 @@ class RobotShapes:
 
     def around(self, thing: Obstacle) -> Shape:
         """The shape of a thing that stands in the world."""
-        return replace(self._shape_of(thing), name=thing.name, frame=pose_row(thing.pose_obstacle_in_world))
+        known = self._standing.get(id(thing))
+        if known is None or known[0] is not thing:
+            if len(self._standing) > KNOWN:
+                self._standing.clear()
+            frame = pose_row(thing.pose_obstacle_in_world)
+            known = self._standing[id(thing)] = thing, replace(self._shape_of(thing), name=thing.name, frame=frame)
+        return known[1]
 
     def chain(self, shape: Shape) -> list[tuple[int, int, float]]:
         """What moves a shape, the base first: joints, which of all motions is theirs, and how far it may be from them.
@@ -156,20 +168,25 @@ class RobotShapes:
 def make_shape(name: str, solid: Any, joint: int, frame: FloatArray) -> Shape:
     """A convex shape of coal, carried by a joint."""
     solid.computeLocalAABB()
-    centre, radius = np.asarray(solid.aabb_center), float(solid.aabb_radius)
+    centre = np.asarray(solid.aabb_center)
     kind, size, points = CLOUD, np.zeros(3), np.zeros((0, 3))
     if isinstance(solid, coal.Box):
         kind, size = BOX, np.asarray(solid.halfSide)
+        radius = float(np.linalg.norm(size))
     elif isinstance(solid, coal.Sphere):
         kind, size = SPHERE, np.full(3, solid.radius)
+        radius = float(solid.radius)
     elif isinstance(solid, coal.Cylinder):
         kind, size = CYLINDER, np.array([solid.radius, solid.halfLength, 0.0])
-    elif isinstance(solid, coal.ConvexBase):
-        points = np.array(solid.points())
-    else:  # some other kind, which is inside the box around it
-        box = solid.aabb_local
-        points = np.array([np.where(corner, box.max_, box.min_) for corner in np.ndindex(2, 2, 2)])
-    return Shape(name, solid, joint, frame, kind, size, points, np.append(centre, radius))
+        radius = float(np.linalg.norm(size))
+    else:
+        if isinstance(solid, coal.ConvexBase):
+            points = np.array(solid.points())
+        else:  # some other kind, which is inside the box around it
+            box = solid.aabb_local
+            points = np.array([np.where(corner, box.max_, box.min_) for corner in np.ndindex(2, 2, 2)])
+        radius = float(np.linalg.norm(points - centre, axis=1).max())
+    return Shape(name, solid, joint, frame, kind, np.concatenate((size, centre, [radius])), points)
 
 
 def pose_row(pose: Pose) -> FloatArray:

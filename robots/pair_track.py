@@ -1,7 +1,7 @@
 """Distances along the way of one posture: bounds that hold, and exact ones where they are asked for."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import coal
 import numpy as np
@@ -44,7 +44,7 @@ class PairTrack:
         self._joint_poses, self._poses = np.zeros((len(pairs.scene.parent), 12)), np.zeros((shapes, 12))
         self._reach = pairs.scene.reach.copy()
         # What coal asks for: where each shape is, written when it is needed.
-        self._transforms = [coal.Transform3s() for _ in range(shapes)]
+        self._transforms: list[Any] = [None] * shapes
         self._written = [-1] * shapes
         self._number = 0
         self._request, self._result = coal.DistanceRequest(), coal.DistanceResult()
@@ -114,7 +114,7 @@ class PairTrack:
 
     def look_ahead(
         self, end: "PairTrack", way: FloatArray, bases: Sequence[Pose], least: FloatArray
-    ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    ) -> tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray]:
         """Which pairs bounds do not show to keep distances at the end of a way from here, and along it.
 
         Args:
@@ -124,8 +124,9 @@ class PairTrack:
             least: Distances to keep, (k,) [m].
 
         Returns:
-            Pairs that may be too near at the end; others that may pass too near; positions of all joints behind each
-            stretch, (m, nv); sums of levers for the first 0 to m stretches, for `NearPairs.gone`.
+            Pairs that may be too near at the end; others that may pass too near, and a stretch for each, 0 to m - 1,
+            on which they may; positions of all joints behind each stretch, (m, nv); sums of levers for the first 0 to m
+            stretches, for `NearPairs.gone`.
         """
         self._place()
         assert self._at is not None  # `move` comes first
@@ -190,6 +191,8 @@ class PairTrack:
     def _write(self, shape: int) -> None:
         """Write where a shape is, for coal."""
         pose = self._poses[shape]
+        if self._transforms[shape] is None:
+            self._transforms[shape] = coal.Transform3s()
         self._transforms[shape].setTransform(pose[:9].reshape(3, 3), pose[9:])
         self._written[shape] = self._number
 

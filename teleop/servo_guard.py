@@ -20,6 +20,7 @@ from robots.obstacle import Obstacle
 from robots.pose import FloatArray, Pose
 
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 STOP = 0.007
 """Distance at which approaches end [m];"""
@@ -64,6 +65,7 @@ class ServoGuard:
     Attributes:
         names: The two names of each pair, k of them.
         contacts: Which pairs may touch, (k,).
+        own: The robot's own shapes, from which other guards of it are made in little time.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class ServoGuard:
         held = held or {}
         self._kind = _kind(obstacles, held)
         self._pairs = NearPairs(robot, obstacles, held, own)
+        self.own = self._pairs.own
         self.names, self.contacts = self._pairs.names, self._pairs.contacts
         self._now, self._end, self._between = (self._pairs.track() for _ in range(3))
         self._stop = np.where(self.contacts, PRESS, STOP)
@@ -84,10 +87,25 @@ class ServoGuard:
         self._floor = np.where(self.contacts, PRESS_MOST, FLOOR)
         self._dofs = len(robot.joint_names) + (2 if robot.drive is not None else 0)
         self._openings: Mapping[str, float] = {}
+        if own is None:
+            self._warm_up()
+
+    def _warm_up(self) -> None:
+        """Ask everything once: what is loaded or compiled when it is first used would delay a step."""
+        robot, now = self._pairs.robot, self._now
+        base, speeds = robot.pose_base_in_world, np.full(self._dofs, 1e-3)
+        for q in (robot.home, robot.home + 1e-9):
+            self.look(q, {}, base)
+        self.dampers(speeds, speeds)
+        self.offending(np.outer(PARTS, speeds), [base] * len(PARTS))
+        some = np.arange(min(1, len(self.names)))
+        now.refine(some)
+        _least(np.ascontiguousarray(now.gradients(some)[:, : self._dofs]), speeds, speeds, np.ones(len(some)))
+        now.below(np.full(len(self.names), -np.inf))
 
     def rebuilt(self, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]]) -> "ServoGuard":
         """A guard of the same robot among other things; made in little time."""
-        return ServoGuard(self._pairs.robot, obstacles, held, self._pairs.own)
+        return ServoGuard(self._pairs.robot, obstacles, held, self.own)
 
     def watch(self, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]]) -> bool:
         """Move what is there already.
@@ -141,27 +159,28 @@ class ServoGuard:
             bases: Where the base stands then, m of them.
         """
         least, now, end = self._least, self._now, self._end
-        ends, which, along, sums = now.look_ahead(end, np.ascontiguousarray(way), bases, least)
+        ends, which, where, along, sums = now.look_ahead(end, np.ascontiguousarray(way), bases, least)
         if not len(ends) and not len(which):
             return which
         bad = near = end.below(least, ends)
         if len(near):
             bad = near[self._worse(near, way[-1])]
         if len(ends) > len(near):
-            which = np.concatenate((which, ends[end.bounds[ends] >= least[ends]]))
+            others = ends[end.bounds[ends] >= least[ends]]
+            which, where = np.concatenate((which, others)), np.concatenate((where, np.zeros_like(others)))
         if len(which):
             start, last = now.refine(which), end.refine(which)
-            short = start + last - self._pairs.gone(sums[-1], which) < 2.0 * least[which]
-            which = which[short & (start >= least[which])]
+            short = (start + last - self._pairs.gone(sums[-1], which) < 2.0 * least[which]) & (start >= least[which])
+            which, where = which[short], where[short]
         if len(which):
-            bad = np.concatenate((bad, which[self._passes_too_near(which, along, bases, sums)]))
+            bad = np.concatenate((bad, which[self._passes_too_near(which, where, along, bases, sums)]))
         return bad
 
-    def moved_by(self, pairs: IntArray) -> NDArray[np.bool_]:
+    def moved_by(self, pairs: IntArray) -> BoolArray:
         """Which speeds change distances of pairs, (dofs,)."""
         return self._pairs.moved_by(pairs)[: self._dofs]
 
-    def _worse(self, near: IntArray, way: FloatArray) -> NDArray[np.bool_]:
+    def _worse(self, near: IntArray, way: FloatArray) -> BoolArray:
         """Which pairs that end too near are not on their way out."""
         before = self._now.refine(near)
         after = self._end.bounds[near]
@@ -176,26 +195,50 @@ class ServoGuard:
         return np.asarray(~fine)
 
     def _passes_too_near(
-        self, which: IntArray, along: FloatArray, bases: Sequence[Pose], sums: FloatArray
-    ) -> NDArray[np.bool_]:
-        """Which pairs cannot be shown to keep their distance between the looks at the way."""
+        self, which: IntArray, where: IntArray, along: FloatArray, bases: Sequence[Pose], sums: FloatArray
+    ) -> BoolArray:
+        """Which pairs cannot be shown to keep their distance between the looks at the way.
+
+        Args:
+            which: Pairs, w of them.
+            where: A stretch for each where they most likely do not, (w,).
+            along: See `PairTrack.look_ahead`, as for sums.
+            bases: Poses of the base behind each stretch.
+            sums: Of levers.
+        """
         bad = np.zeros(len(which), dtype=bool)
-        start = self._now.bounds[which]
-        stretches = [(0, len(along), np.arange(len(which)), start, self._end.bounds[which])]
+
+        def distances(stretches: int, pairs: IntArray) -> FloatArray:
+            """Distances after so many stretches."""
+            if stretches in (0, len(along)):
+                return (self._end if stretches else self._now).refine(pairs)
+            self._between.jump(along[stretches - 1], bases[stretches - 1])
+            return self._between.refine(pairs)
+
+        def doubtful(first: int, last: int, pairs: IntArray, before: FloatArray, after: FloatArray) -> BoolArray:
+            travel = self._pairs.gone(sums[last] - sums[first], pairs)
+            return np.asarray(before + after - travel < 2.0 * self._least[pairs])
+
+        for first in sorted(set(where.tolist())):
+            some = np.flatnonzero(where == first)
+            pairs = which[some]
+            before, after = distances(first, pairs), distances(first + 1, pairs)
+            bad[some] = doubtful(first, first + 1, pairs, before, after)
+        some = np.flatnonzero(~bad)
+        if not len(some):
+            return bad
+        stretches = [(0, len(along), some, distances(0, which[some]), distances(len(along), which[some]))]
         while stretches:
             first, last, some, before, after = stretches.pop()
-            pairs = which[some]
-            travel = self._pairs.gone(sums[last] - sums[first], pairs)
-            doubtful = before + after - travel < 2.0 * self._least[pairs]
-            if not doubtful.any():
+            unsure = doubtful(first, last, which[some], before, after)
+            some, before, after = some[unsure], before[unsure], after[unsure]
+            if not len(some):
                 continue
-            some, before, after = some[doubtful], before[doubtful], after[doubtful]
             if last - first == 1:
                 bad[some] = True
                 continue
             middle = (first + last) // 2
-            self._between.jump(along[middle - 1], bases[middle - 1])
-            between = self._between.refine(which[some])
+            between = distances(middle, which[some])
             stretches += [(first, middle, some, before, between), (middle, last, some, between, after)]
         return bad
 
@@ -205,7 +248,9 @@ def _least(rows: FloatArray, wanted: FloatArray, braking: FloatArray, room: Floa
     """How fast each pair's room (m,) [m] may shrink at most; see `ServoGuard.dampers` and `Dampers`."""
     # Where pairs are too near already, only the nearest may not come nearer: of two that squeeze a link from both
     # sides, one would otherwise forbid the way out of the other.
-    deepest = min(room.min(), 0.0)
+    deepest = 0.0
+    for row in range(room.size):
+        deepest = min(deepest, room[row])
     least = np.empty(room.size)
     for row in range(room.size):
         speed = way = 0.0

@@ -6,7 +6,6 @@ lead to a goal is chosen by others; this is only the hand that holds the device.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from robots.pose import FloatArray, Pose
 from twin.state import ArmState, WorldState
 
 from .drive_command import ArmWish, DriveCommand
-from .gamepad_mapping import GripperWish
+from .strokes import Grip, Manner, Press, Reach, Stroke
 
 LOOK_EVERY = 4
 """Control steps between two looks: 60 Hz, as devices report."""
@@ -46,90 +45,6 @@ YIELDING = 1e-4
 """How fast the hand gives way to a force that it does not want [m/s/N]."""
 FEEL_AFTER = 0.2
 """A stroke does not trust the force it feels before this time [s]: what is carried has to be set in motion."""
-
-
-@dataclass(frozen=True, slots=True)
-class Reach:
-    """Move the tool in a straight line to a pose, turning on the way.
-
-    Attributes:
-        pose: Where to, in the world.
-        speed: Largest speed [m/s].
-        turning: Largest turning speed [rad/s].
-        near: Nearer is there [m].
-        aligned: Turned by less than this is there [rad].
-        onwards: Whether the point is only passed: the hand does not slow down for it.
-        push: End when the wrist is pushed against the motion by this force more than at the start [N].
-        patience: How much longer than a smooth motion it may take [s].
-    """
-
-    pose: Pose
-    speed: float
-    turning: float = 1.2
-    near: float = 0.003
-    aligned: float = 0.02
-    onwards: bool = False
-    push: float | None = None
-    patience: float = 5.0
-
-
-@dataclass(frozen=True, slots=True)
-class Grip:
-    """Close or open the fingers and wait until they are still.
-
-    Attributes:
-        wish: What they do.
-        settle: How long to wait then [s].
-    """
-
-    wish: GripperWish
-    settle: float = 0.15
-
-
-@dataclass(frozen=True, slots=True)
-class Rest:
-    """Hold the hand still.
-
-    Attributes:
-        seconds: How long [s].
-    """
-
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class Press:
-    """Move on slowly until something pushes back more than at the operator's start, and press on it for a while.
-
-    Attributes:
-        direction: Where to, (3,), a unit vector in the world.
-        force: With what force [N].
-        seconds: For how long [s].
-        speed: How fast until then [m/s].
-        farthest: It gives up when nothing pushed back after this way [m].
-    """
-
-    direction: FloatArray
-    force: float
-    seconds: float
-    speed: float = 0.004
-    farthest: float = 0.02
-
-
-Stroke = Reach | Grip | Rest | Press
-
-
-@dataclass(frozen=True, slots=True)
-class Manner:
-    """How a person drives.
-
-    Attributes:
-        tremble: How much the hand strays [m/s].
-        hesitation: Longest pause between two strokes [s].
-    """
-
-    tremble: float = 0.004
-    hesitation: float = 0.15
 
 
 class TableOperator:

@@ -97,3 +97,89 @@ def test_near_pairs_of_a_collision_model_come_with_their_points() -> None:
     assert found[0].distance == pytest.approx(0.016, abs=2e-6)
     np.testing.assert_allclose(found[0].point_on_first - found[0].point_on_second, [0, 0, 0.016], atol=1e-4)
     assert all(one.distance <= other.distance for one, other in zip(found, found[1:], strict=False))
+
+
+def many_things() -> list[Obstacle]:
+    """One of each kind, turned, where arms get to."""
+    turned = quaternion_xyzw(rotation_matrix(np.array([0.2, -0.4, 0.1, 0.9])))
+    corners = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.12, 0.0], [0.02, 0.03, 0.15], [0.08, 0.09, 0.05]])
+    return [
+        *things(-0.1),
+        Obstacle("can", "cylinder", (0.04, 0.2), Pose(np.array([0.6, -0.2, 0.1]), turned)),
+        Obstacle("brick", "box", (0.1, 0.2, 0.06), Pose(np.array([0.45, 0.35, 0.15]), turned)),
+        Obstacle("rock", "hull", (), Pose(np.array([0.3, 0.1, 0.3]), turned), corners),
+    ]
+
+
+@pytest.mark.parametrize("name", ["three_dof", "baxter", "mico_segway"])
+def test_planes_and_levers_are_never_above_the_distance(name: str) -> None:
+    """Whatever was asked before, for small and for large motions, and whatever is in the hand."""
+    robot, rng = load_robot(name), np.random.default_rng(11)
+    cup = Obstacle("cup", "cylinder", (0.03, 0.1), Pose(np.array([0.0, 0.01, 0.04]), LEVEL))
+    pairs = NearPairs(robot, many_things(), {next(iter(robot.arms)): [cup]})
+    track, judge = pairs.track(), pairs.track()
+    everything, base = np.arange(len(pairs.names)), robot.pose_base_in_world
+    lower, upper = np.maximum(robot.lower, -np.pi), np.minimum(robot.upper, np.pi)
+    q = robot.home
+    for step in range(60):
+        size = (1e-3, 0.05, 0.5)[step % 3]
+        q = np.clip(q + rng.normal(0.0, size, len(q)), lower, upper)
+        openings = {arm: float(rng.uniform(0.0, 0.04)) for arm in robot.arms}
+        if robot.drive is not None:
+            turn = rng.normal(0.0, size)
+            shift = np.array([*rng.normal(0.0, size, 2), 0.0])
+            base = Pose(base.position + shift, np.array([0.0, 0.0, np.sin(turn), np.cos(turn)]))
+        positions = pairs.positions(q, openings)
+        track.move(positions, base)
+        judge.jump(positions, base)
+        distances = judge.refine(everything)
+        # The solver ends its search within two micrometres above the distance; bounds stay as far below it.
+        assert np.all(track.bounds <= distances + 1e-9)
+        near = track.below(rng.uniform(-0.01, 0.4, len(everything)))
+        assert np.all(track.bounds <= distances + 1e-9)
+        np.testing.assert_array_equal(track.bounds[near], distances[near])
+
+
+def test_planes_are_as_good_as_the_solver() -> None:
+    """Else nearly all would be left to the solver, which takes ten times as long."""
+    robot = load_robot("baxter")
+    pairs = NearPairs(robot, many_things())
+    track, judge = pairs.track(), pairs.track()
+    positions = pairs.positions(robot.home, {})
+    track.move(positions, robot.pose_base_in_world)
+    judge.jump(positions, robot.pose_base_in_world)
+    distances = judge.refine(np.arange(len(pairs.names)))
+    # A bound may end a hundredth of a per cent short; and 2 um below, as said above.
+    assert not len(track.below(distances * 0.9999 - 5e-6))
+    assert not track.exact[distances > 0.0].any()
+
+
+@pytest.mark.parametrize("name", ["three_dof", "baxter", "mico_segway"])
+def test_pairs_are_those_of_the_collision_model(name: str) -> None:
+    robot = load_robot(name)
+    held = {arm: [Obstacle(f"cup {arm}", "sphere", (0.03,), Pose(np.zeros(3), LEVEL))] for arm in robot.arms}
+    for things_held in ({}, held):
+        collision = CollisionModel(robot, many_things(), things_held)
+        numbers = [(int(each.first), int(each.second)) for each in collision._geometry.collisionPairs]
+        pairs = NearPairs(robot, many_things(), things_held)
+        assert list(zip(pairs.firsts, pairs.seconds, strict=True)) == numbers
+        assert list(pairs.names) == [(collision._names[a], collision._names[b]) for a, b in numbers]
+
+
+def test_what_is_held_may_be_moved_in_the_hand() -> None:
+    robot, arm = load_robot("baxter"), "left"
+    stick = [Obstacle("stick", "box", (0.02, 0.02, 0.3), Pose(np.array([0.0, 0.0, 0.1]), LEVEL))]
+    moved = [Obstacle("stick", "box", (0.02, 0.02, 0.3), Pose(np.array([0.0, 0.05, 0.3]), LEVEL))]
+    pairs, wanted = NearPairs(robot, things(-0.1), {arm: stick}), NearPairs(robot, things(-0.1), {arm: moved})
+    track, judge = pairs.track(), wanted.track()
+    positions, base = pairs.positions(robot.home, {}), robot.pose_base_in_world
+    everything = np.arange(len(pairs.names))
+    for each in (track, judge):
+        each.move(positions, base)
+    before = track.refine(everything)
+    track.shrink(pairs.place(things(-0.1), {arm: moved}))
+    distances = judge.refine(everything)
+    assert np.all(track.bounds <= distances + 2e-6)  # the solver's own
+    assert np.abs(distances - before).max() > 0.05
+    np.testing.assert_allclose(track.refine(everything), distances, atol=2e-6)
+    np.testing.assert_allclose(pairs.scene.reach, wanted.scene.reach, atol=1e-12)  # rounding

@@ -9,7 +9,8 @@ from robots.kinematics import quaternion_xyzw, rotation_matrix
 from robots.pose import Pose
 from teleop.drive_command import DriveCommand
 from teleop.drive_session import DriveSession
-from teleop.table_operator import LOOK_EVERY, Grip, Reach, Rest, Stroke, TableOperator, difference
+from teleop.strokes import Grip, Reach, Rest, Stroke
+from teleop.table_operator import LOOK_EVERY, TableOperator, difference
 from twin import World
 
 _ANGLES = st.floats(-1.5, 1.5)
@@ -20,7 +21,7 @@ def _turn(roll: float, pitch: float, yaw: float) -> np.ndarray:
     about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
     about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
     about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
-    return about_z @ about_y @ about_x
+    return np.asarray(about_z @ about_y @ about_x)
 
 
 @given(_ANGLES, _ANGLES, _ANGLES, _ANGLES)
