@@ -13,7 +13,6 @@ from typing import overload
 
 import numpy as np
 
-from .collision import CollisionModel
 from .model import RobotModel
 from .near_kernel import BoolArray, IntArray, Scene, packed, unpacked
 from .near_shapes import RobotShapes, Shape, pose_row
@@ -72,7 +71,7 @@ class NearPairs:
 
     def __init__(
         self,
-        robot: RobotModel | CollisionModel,
+        robot: RobotModel,
         obstacles: Sequence[Obstacle] = (),
         held: Mapping[str, Sequence[Obstacle]] = _NOTHING,
         own: RobotShapes | None = None,
@@ -88,9 +87,6 @@ class NearPairs:
         Raises:
             RobotError: `held` names an arm that the robot does not have.
         """
-        if isinstance(robot, CollisionModel):  # TEMPORARY, for executor/collections/rehearsal.py
-            collision, obstacles, held = robot, robot.obstacles, robot.held
-            robot = collision.robot
         for arm in held:
             robot.slice_of(arm)
         self.robot = robot
@@ -148,9 +144,6 @@ class NearPairs:
                     self.scene.reach[index, : len(chain)] = [reach for _, _, reach in chain]
                     self._in_hand[index] = each
         return np.asarray(shift[self.scene.first] + shift[self.scene.second])
-
-    def home(self, base: Pose) -> None:  # TEMPORARY, for executor/collections/rehearsal.py
-        """Nothing to do any more."""
 
     def track(self) -> PairTrack:
         """Follow a posture of its own."""

@@ -80,7 +80,7 @@ class RobotServo:
     def watch(self, obstacles: Sequence[Obstacle], held: Mapping[str, Sequence[Obstacle]] = _NOTHING) -> None:
         """Tell what is around and what is held now; cheap while only places change."""
         if not self._guard.watch(obstacles, held):
-            self._guard = ServoGuard(self.robot, obstacles, held)
+            self._guard = self._guard.rebuilt(obstacles, held)
 
     def step(self, command: DriveCommand, view: ServoView, dt: float) -> RobotServoResult:
         """Choose what to execute during the next control period.

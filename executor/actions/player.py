@@ -89,7 +89,6 @@ class ActionPlayer:
 
     def _with(self, hand: ActingHand, plan: ActionPlan, on_start: Callable[[str], None]) -> Played:
         """Play with one arm."""
-        started = False
 
         def done(steps: tuple[Primitive, ...]) -> Iterator[tuple[Primitive, Handled]]:
             for step in steps:
@@ -99,13 +98,12 @@ class ActionPlayer:
             for step, outcome in done(plan.before):
                 if not outcome.success:
                     return Played(False, outcome.reason, _name(step), hand.name)
-        started = True
         hand.settle()
         on_start(hand.name)
         for step, outcome in done(plan.steps):
             if not outcome.success:
-                return Played(False, outcome.reason, _name(step), hand.name, started)
-        return Played(True, arm=hand.name, started=started)
+                return Played(False, outcome.reason, _name(step), hand.name, started=True)
+        return Played(True, arm=hand.name, started=True)
 
     def _arms(self, object_id: int) -> list[str]:
         """Names of the arms: that which holds the object, else the nearest first."""

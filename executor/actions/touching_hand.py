@@ -59,7 +59,9 @@ class TouchingHand:
         self._approach = found
         if touch.onwards:
             return Handled(True)  # it is felt, and pushed on, in one go
-        motions.play(found.way)
+        feeling = Feeling(motions, found.direction)
+        # The way down ends before the touch; that along the table goes on through it.
+        motions.play(found.way, None if touch.side is Side.ABOVE else lambda: feeling.force > FELT)
         self._leaning = ForceTouch(motions, found.direction, touch.force)
         if not self._leaning.come(FELT_WITHIN):
             return Handled(False, f"not felt: the wrist felt {self._leaning.felt:.1f} N where the object should be")

@@ -9,7 +9,8 @@ from executor.collections.rehearsal import BENT, Rehearsal
 from executor.grasp_choice import DEPTHS, TILTS
 from robots.collision import CollisionModel
 from robots.pose import FloatArray, Pose
-from teleop.table_operator import Reach, difference
+from teleop.strokes import Reach
+from teleop.table_operator import difference
 from twin import World
 from twin.grasp_poses import GraspPose, grasp_poses
 
@@ -98,7 +99,8 @@ def _comfortable(
         if not posture.success or (bend := rehearsal.bend(posture.q)) > BENT:
             continue
         turn = float(np.linalg.norm(difference(here, tool)[1]))
-        effort = bend / BENT + 0.45 * turn + 0.3 * steadiness[number] + float(rng.uniform(0.0, 0.6))
+        travel = float(np.abs(posture.q - start).max())
+        effort = 0.6 * bend / BENT + 0.6 * turn + 0.3 * travel + 0.3 * steadiness[number] + float(rng.uniform(0.0, 0.5))
         found.append((effort + (dislike(posture.q) if dislike else 0.0), number))
     return [proposals[number] for _, number in sorted(found)]
 

@@ -27,6 +27,10 @@ SENTENCES = 5
 """Sentences with a demo in each language; every 51st has one more, 1,024 in all."""
 ROLLING = ("apple", "pear", "banana", "marker", "cylinder")
 """What may roll when it is let go."""
+PLACES = tuple((x, y) for x in (0.53, 0.77) for y in (0.25, 0.0, -0.25))
+"""Where things stand: canonical places of the table, as people lay a table for a demonstration (thesis 3.3.2) [m],"""
+ABOUT = 0.025
+"""so near to them [m]."""
 FARTHER = 0.06
 """What was moved is so far from where it was, at least [m]."""
 
@@ -94,7 +98,7 @@ class LeedsCollection:
 
 def _scene(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:
     """A random scene with an object among others; which number it has says nothing."""
-    scene = random_tabletop(rng, seed=seed, including=thing)
+    scene = random_tabletop(rng, seed=seed, including=thing, places=PLACES, about=ABOUT)
     order = rng.permutation(len(scene.objects)).tolist()
     objects = tuple(scene.objects[old].model_copy(update={"id": new}) for new, old in enumerate(order))
     return scene.model_copy(update={"objects": objects})

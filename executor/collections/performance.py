@@ -14,7 +14,8 @@ from teleop.gamepad import GamepadState
 from teleop.gamepad_mapping import GamepadMapping
 from teleop.record import STATE_EVERY
 from teleop.recorder import Recorder
-from teleop.table_operator import LOOK_EVERY, Manner, Stroke, TableOperator
+from teleop.strokes import Manner, Stroke
+from teleop.table_operator import LOOK_EVERY, TableOperator
 from twin import World
 from twin.state import WorldState
 

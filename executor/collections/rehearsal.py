@@ -17,7 +17,8 @@ from robots.obstacle import Obstacle
 from robots.pose import FloatArray, Pose
 from teleop.arm_servo import LENGTH
 from teleop.servo_guard import STOP
-from teleop.table_operator import Reach, difference
+from teleop.strokes import Reach
+from teleop.table_operator import difference
 from twin import World
 
 STEP, TURN_STEP = 0.012, 0.08
@@ -104,10 +105,9 @@ class Rehearsal:
             things = {arm: [_seen_from(frame, each) for each in around if each.name == str(held)]}
             around = [each for each in around if each.name != str(held)]
         self._model = CollisionModel(self._robot, around, things, moving=[arm])
-        self._pairs = NearPairs(CollisionModel(self._robot, around, things))
+        self._pairs = NearPairs(self._robot, around, things)
         self._track = self._pairs.track()
         base = self._robot.pose_base_in_world
-        self._pairs.home(base)
         self._base = base
 
     def along(

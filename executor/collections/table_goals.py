@@ -13,10 +13,10 @@ from twin import World
 from twin.objects.overlap import footprint_depth
 from twin.scene_spec import ObjectSpec
 
-ROWS: dict[Row, float] = {"bottom": 0.50, "middle": 0.65, "top": 0.77}
+ROWS: dict[Row, float] = {"bottom": 0.53, "top": 0.77}
 COLUMNS: dict[Column, float] = {"left": 0.25, "middle": 0.0, "right": -0.25}
 """Middle of the parts of the table [m]."""
-ABOUT = 0.035
+ABOUT = 0.025
 """A thing is put so near to that, in each direction [m]."""
 REACH_X, REACH_Y = (0.44, 0.82), (-0.36, 0.36)
 """Where things are put at all [m]."""

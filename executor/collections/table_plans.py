@@ -12,7 +12,7 @@ from executor.collections.table_goals import Goal, goals
 from robots.kinematics import quaternion_xyzw, rotation_matrix
 from robots.pose import FloatArray, Pose
 from teleop.annotators import TableAction
-from teleop.table_operator import Grip, Manner, Reach, Rest, Stroke
+from teleop.strokes import Grip, Manner, Reach, Rest, Stroke
 from twin import World
 
 QUICK = 0.28
@@ -24,6 +24,9 @@ MIDDLE = 0.10
 TURNS = (0.0, 0.4, -0.4, 0.9, -0.9, 1.5, -1.5)
 """By how much a thing is turned on the way where it is not in reach otherwise [rad]."""
 GOALS_TRIED = 8
+"""Goals that are tried in the mind with each grasp."""
+FAR_ENOUGH = 0.09
+"""What is moved is brought so far at least [m]."""
 SETTLING = 0.012
 """Height from which a thing is set down slowly [m],"""
 SLOW = 0.03
@@ -100,7 +103,12 @@ def _picking(world: World, arm: str, target: int, rng: np.random.Generator) -> T
 def _putting(world: World, arm: str, target: int, action: TableAction, rng: np.random.Generator) -> TablePlan | None:
     speed = float(rng.uniform(*SPEEDS))
     coming = QUICK if action == "put down" else speed
-    wanted = list(goals(world, target, rng))[:GOALS_TRIED]
+    here = pose_of(world, target).position[:2]
+    wanted = [
+        goal
+        for goal in goals(world, target, rng)
+        if action == "put down" or np.linalg.norm(goal.position[:2] - here) > FAR_ENOUGH
+    ][:GOALS_TRIED]
     for chosen in _few(reachable_grasps(world, Rehearsal(world, arm), target, rng, coming)):
         holding = Rehearsal(world, arm, target, chosen.grasp.pose_tool_in_world)
         alone = Rehearsal(world, arm, without={target})

@@ -21,7 +21,7 @@ from executor.collections.driven_grasps import moved
 from executor.collections.rehearsal import Rehearsal
 from executor.demo_summary import summarise
 from teleop import check_replay, load_demo
-from teleop.table_operator import Reach
+from teleop.strokes import Reach
 from teleop.truth import read_truth
 from twin import World
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from twin import SceneSpec
+from twin.errors import SceneError
 from twin.objects import CATALOGUES
 from twin.objects.overlap import footprint_depth
 from twin.ordering_scene import REGION_X as ORDER_X
 from twin.ordering_scene import REGION_Y as ORDER_Y
 from twin.scenes import resolve_scene
-from twin.tabletop_scene import CLEARANCE, REGION_X, REGION_Y
+from twin.tabletop_scene import CLEARANCE, REGION_X, REGION_Y, random_tabletop
 
 SEEDS = range(200)
 
@@ -38,6 +39,27 @@ def test_tabletop_objects_stand_apart_on_the_table(tables: list[SceneSpec]) -> N
 
 def test_every_object_of_the_tabletop_comes_up(tables: list[SceneSpec]) -> None:
     assert {each.model for spec in tables for each in spec.objects} == set(CATALOGUES["tabletop"])
+
+
+def test_objects_stand_at_given_places_each_at_another_one() -> None:
+    places = [(x, y) for x in (0.53, 0.77) for y in (0.25, 0.0, -0.25)]
+    taken = set()
+    for seed in SEEDS:
+        spec = random_tabletop(np.random.default_rng(seed), places=places, about=0.02)
+        near = [
+            index
+            for each in spec.objects
+            for index, (x, y) in enumerate(places)
+            if abs(each.position[0] - x) <= 0.02 and abs(each.position[1] - y) <= 0.02
+        ]
+        assert len(near) == len(set(near)) == len(spec.objects)
+        taken |= set(near)
+    assert taken == set(range(6))
+
+
+def test_too_few_places_are_refused() -> None:
+    with pytest.raises(SceneError, match="up to 6 objects, got 2 places"):
+        random_tabletop(np.random.default_rng(0), places=[(0.5, 0.0), (0.7, 0.0)])
 
 
 def test_ordering_has_one_object_and_each_comes_up() -> None:
