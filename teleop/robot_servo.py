@@ -20,6 +20,7 @@ from .arm_servo import ArmIntent, ArmServo
 from .base_servo import rolled
 from .drive_command import ArmWish, DriveCommand
 from .errors import ServoError
+from .finger_servo import FingerServo
 from .servo_brakes import ServoBrakes, State
 from .servo_camera import body_axes, camera_axes_in_base
 from .servo_guard import IntArray, ServoGuard
@@ -61,14 +62,14 @@ class RobotServo:
         self._n, self._d = len(robot.joint_names), len(self._brakes.names)
         self._camera = camera_axes_in_base(robot)
         self._state: State | None = None
-        self._openings: dict[str, float] = {}
+        self._fingers = FingerServo(robot)
         self._guard = ServoGuard(robot, obstacles, held)
         self._warm_up()
 
     def reset(self) -> None:
         """Forget what was commanded: the next step starts from measured speeds and openings."""
         self._state = None
-        self._openings = {}
+        self._fingers.reset()
         for arm in self._arms.values():
             arm.rest()
 
@@ -98,22 +99,16 @@ class RobotServo:
         turn = rotation_matrix(base.orientation_xyzw)
         if self._state is None:
             self._state = self._brakes.first([*view.dq.tolist(), *([0.0] * (self._d - self._n))])
-        if not self._openings:
-            self._openings = {
-                name: view.openings.get(name, arm.gripper.max_opening) for name, arm in self.robot.arms.items()
-            }
         stop, why = why_to_stop(command, self.robot)
-        widest = self._widest(view)
-        self._guard.look(q, widest, base)
-        cramped = self._grip(command, view) if stop is DriveReason.NONE else set()
-        if (told := self._widest(view)) != widest:
-            self._guard.look(q, told, base)
-        intents = self._intents(command if stop is DriveReason.NONE else DriveCommand(), q, turn, view, dt)
+        heard = command if stop is DriveReason.NONE else DriveCommand()
+        self._guard.look(q, self._fingers.measured(view.openings), base)
+        cramped = self._fingers.tell(heard, view.openings, self._guard)
+        intents = self._intents(heard, q, turn, view, dt)
         notes = ServoNotes(intents)
         for name, each in intents.items():
             notes.note(name, each.reason, each.detail)
-        for name in cramped:
-            notes.note(name, DriveReason.COLLISION, "no room for the fingers to open")
+        for name, text in cramped.items():
+            notes.note(name, DriveReason.COLLISION, text, always=True)
         wanted, base_asked = self._wanted(intents, command, stop)
         target = self._limiter.limited(wanted, intents, q, self._guard, notes) if wanted.any() else wanted
         velocity = self._advance(target, stop is DriveReason.NONE, q, base, dt, notes)
@@ -122,7 +117,7 @@ class RobotServo:
             arm.proceed(speeds, dt)
             if stop is not DriveReason.NONE or name in notes.slid:
                 arm.follow(intents[name].jacobian, speeds)
-        return outcome(self.robot, (stop, why), base_asked, intents, velocity, turn, notes, self._openings)
+        return outcome(self.robot, (stop, why), base_asked, intents, velocity, turn, notes, dict(self._fingers.told))
 
     def _warm_up(self) -> None:
         """Take a step that nobody sees: what is compiled or made when it is first used would delay the first ones."""
@@ -138,24 +133,6 @@ class RobotServo:
         if not 0.0 < dt < 1.0:
             raise ServoError(f"dt is {dt}, allowed above 0 up to 1 s")
         return view.q
-
-    def _widest(self, view: ServoView) -> dict[str, float]:
-        """Gaps to keep distance with [m]: fingers that were told to open will soon be there."""
-        return {name: max(view.openings.get(name, told), told) for name, told in self._openings.items()}
-
-    def _grip(self, command: DriveCommand, view: ServoView) -> set[str]:
-        """Tell the fingers what to do; returns the arms whose fingers have no room to open."""
-        cramped = set()
-        for name, wish in command.arms.items():
-            widest = self.robot.arms[name].gripper.max_opening
-            if wish.gripper == "close":
-                self._openings[name] = 0.0
-            elif wish.gripper == "open" and self._openings[name] != widest:
-                if self._guard.has_room(self._widest(view) | {name: widest}):
-                    self._openings[name] = widest
-                else:
-                    cramped.add(name)
-        return cramped
 
     def _intents(
         self, command: DriveCommand, q: FloatArray, turn: FloatArray, view: ServoView, dt: float

@@ -13,19 +13,21 @@ class ServoNotes:
 
     Attributes:
         slid: Arms that were turned off their way, not only slowed on it.
+        always: Arms whose reason is said even where the arm itself does what it was asked: it concerns the fingers.
     """
 
     def __init__(self, names: Iterable[str]) -> None:
         """Nothing noted yet, of these and of the base."""
         self._notes: dict[str, tuple[DriveReason, str]] = dict.fromkeys((*names, BASE), (DriveReason.NONE, ""))
         self.slid: set[str] = set()
+        self.always: set[str] = set()
 
     def __getitem__(self, name: str) -> tuple[DriveReason, str]:
         """The reason and what is behind it."""
         return self._notes[name]
 
-    def note(self, name: str, reason: DriveReason, detail: str, *, slides: bool = False) -> None:
-        """Note a reason, with what is behind it, and whether the arm leaves its way for it."""
+    def note(self, name: str, reason: DriveReason, detail: str, *, slides: bool = False, always: bool = False) -> None:
+        """Note a reason and what is behind it, whether the arm leaves its way for it, and whether to say it always."""
         before = self._notes[name][0]
         if reason is not DriveReason.NONE and (
             before is DriveReason.NONE or _ORDER.index(reason) < _ORDER.index(before)
@@ -33,3 +35,5 @@ class ServoNotes:
             self._notes[name] = reason, detail
         if slides:
             self.slid.add(name)
+        if always:
+            self.always.add(name)

@@ -50,7 +50,7 @@ def outcome(
         reason, detail = notes[name]
         if stopping:
             reason, detail = stop
-        elif float(np.abs(executed - intent.asked).max()) <= AGREE_WITHIN:
+        elif float(np.abs(executed - intent.asked).max()) <= AGREE_WITHIN and name not in notes.always:
             reason, detail = DriveReason.NONE, ""
         elif reason is DriveReason.NONE:
             reason = DriveReason.ACCELERATION_LIMIT
