@@ -1,4 +1,4 @@
-"""Fingers stop before what they may not touch, wherever the arm carries them meanwhile, and go on when there is room."""
+"""Fingers stop before what they may not touch, wherever the arm carries them, and go on when there is room."""
 
 import numpy as np
 import pytest
