@@ -17,6 +17,7 @@ from learning.concepts.equality_tests import (
 from learning.concepts.feature_space import FeatureSpace
 from learning.concepts.gaussian import Gaussian, merged, squared_mahalanobis, stacked
 from learning.concepts.mixture_json import components_from_json, components_to_json
+from learning.concepts.numbered_components import NumberedComponents
 from learning.concepts.track_noise import TrackNoise
 from learning.errors import PerceptionError
 from learning.saved_numbers import saved_count
@@ -27,7 +28,7 @@ SIGNIFICANCE = 0.001
 concept that should not be."""
 
 
-class IncrementalMixture:
+class IncrementalMixture(NumberedComponents):
     """The concepts of one feature space. Only these components are kept, no values. Satisfies `Mixture`.
 
     Concept numbers are never used twice: number n keeps its meaning as learning goes on. When two old components turn
@@ -41,41 +42,10 @@ class IncrementalMixture:
             space: The feature space, with its scales.
             rules: How values are counted in the tests of equality.
         """
+        super().__init__()
         self.space = space
         self._rules = rules
-        self._components: dict[int, Gaussian] = {}
-        self._names: dict[int, str] = {}
-        self._aliases: dict[int, int] = {}
-        self._next_number = 0
-        self._demos = 0
         self._prepared: tuple[NDArray[np.int64], FloatArray, FloatArray, FloatArray] | None = None
-
-    @property
-    def components(self) -> Mapping[int, Gaussian]:
-        """Concept number to component, aliases left out, in ascending order of number."""
-        return dict(sorted(self._components.items()))
-
-    @property
-    def names(self) -> Mapping[int, str]:
-        """Names that a user gave to concepts, by number."""
-        return dict(sorted(self._names.items()))
-
-    @property
-    def numbers_given(self) -> int:
-        """How many concept numbers were ever given: numbers are 0 .. this - 1, aliases included."""
-        return self._next_number
-
-    @property
-    def weights(self) -> dict[int, float]:
-        """Concept number to mixture weight pi (A.3, A.4, A.5); they sum to 1."""
-        total = sum(component.count for component in self._components.values())
-        return {number: component.count / total for number, component in self.components.items()}
-
-    def resolve(self, number: int) -> int:
-        """The number under which a concept is kept now; itself when it was never merged into an older one."""
-        while number in self._aliases:
-            number = self._aliases[number]
-        return number
 
     def update(
         self,

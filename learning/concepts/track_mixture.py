@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 from learning.concepts.feature_space import FeatureSpace
 from learning.concepts.gaussian import Gaussian, merged
 from learning.concepts.mixture_json import components_from_json, components_to_json, noise_from_json, noise_to_json
+from learning.concepts.numbered_components import NumberedComponents
 from learning.concepts.track_noise import TrackNoise
 from learning.errors import PerceptionError
 from learning.saved_numbers import saved_count
@@ -53,7 +54,7 @@ DIGITS = 6
 """Significant decimal digits of what is kept: sensors give four at most, and the file stays small."""
 
 
-class TrackMixture:
+class TrackMixture(NumberedComponents):
     """The concepts of one feature space whose `kinds` are `wide` or `learned`. Satisfies `Mixture`.
 
     Attributes:
@@ -68,43 +69,12 @@ class TrackMixture:
         """
         if space.kinds == "tested":
             raise ValueError(f"feature space '{space.name}' has kinds that are tested; use IncrementalMixture")
+        super().__init__()
         self.space = space
-        self._components: dict[int, Gaussian] = {}
-        self._names: dict[int, str] = {}
         self._last_seen: dict[int, int] = {}
-        self._aliases: dict[int, int] = {}
-        self._next_number = 0
-        self._demos = 0
         self._noise = TrackNoise.none(space.dimension)
         self._within = TrackNoise.none(space.dimension)
         self._prepared: tuple[NDArray[np.int64], FloatArray, FloatArray] | None = None
-
-    @property
-    def components(self) -> Mapping[int, Gaussian]:
-        """Concept number to component, aliases left out, in ascending order; counts are sightings, not values."""
-        return dict(sorted(self._components.items()))
-
-    @property
-    def names(self) -> Mapping[int, str]:
-        """Names that a user gave to concepts, by number."""
-        return dict(sorted(self._names.items()))
-
-    @property
-    def numbers_given(self) -> int:
-        """How many concept numbers were ever given: numbers are 0 .. this - 1, aliases included."""
-        return self._next_number
-
-    @property
-    def weights(self) -> dict[int, float]:
-        """Concept number to mixture weight; they sum to 1."""
-        total = sum(component.count for component in self._components.values())
-        return {number: component.count / total for number, component in self.components.items()}
-
-    def resolve(self, number: int) -> int:
-        """The number under which a concept is kept now; itself when it was never merged into another."""
-        while number in self._aliases:
-            number = self._aliases[number]
-        return number
 
     def update(
         self,

@@ -3,7 +3,6 @@
 Real server, real control loop in its own process, real WebSockets. What is checked is what the demo recorded.
 """
 
-import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
@@ -14,10 +13,8 @@ from teleop import check_replay
 from teleop.loop import SILENT, ControlLoop
 from teleop.loop_channel import Channel
 from teleop.loop_deck import Deck
-from teleop.loop_process import LoopSettings
-from teleop.server import PageServer
 from tests.teleop.lost_input import PERIOD, check_stops
-from tests.teleop.test_server import SIDEWAYS, STILL, Page, Visitors
+from tests.teleop.test_server import SIDEWAYS, STILL, Page, Visitors, visited
 
 GONE, GIVEN_BACK = "the page that held control is gone", "control was given back"
 NOT_ENABLED, EMERGENCY = "not enabled", "emergency stop"
@@ -27,21 +24,7 @@ BOTH_WAYS = (SIDEWAYS, STILL | {"axes": [1.0, 0.0, 0.0, 0.0]})
 
 def served(scene: str, folder: Path, test: Callable[[Visitors], Awaitable[None]]) -> Path:
     """Run a test with a server of its own; returns the demo that was recorded."""
-
-    async def run() -> None:
-        server = PageServer(LoopSettings(scene, None, 3, folder))
-        ready: asyncio.Future[str] = asyncio.get_running_loop().create_future()
-        serving = asyncio.create_task(server.run(ready.set_result))
-        try:
-            await asyncio.wait((ready, serving), return_when=asyncio.FIRST_COMPLETED)
-            if serving.done():
-                serving.result()
-            await asyncio.wait_for(test(Visitors(server)), 60)
-        finally:
-            serving.cancel()
-            await asyncio.gather(serving, return_exceptions=True)
-
-    asyncio.run(run())
+    visited(test, folder, scene)
     (path,) = folder.glob("*.mcap")
     return path
 

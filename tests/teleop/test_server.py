@@ -155,11 +155,11 @@ class Visitors:
         return int(answer.split(" ")[1]), answer
 
 
-def visited(test: Callable[[Visitors], Awaitable[None]], folder: Path) -> None:
+def visited(test: Callable[[Visitors], Awaitable[None]], folder: Path, scene: str = "board") -> None:
     """Run a test with a server and its own control loop."""
 
     async def run() -> None:
-        server = PageServer(LoopSettings("board", None, 3, folder))
+        server = PageServer(LoopSettings(scene, None, 3, folder))
         ready: asyncio.Future[str] = asyncio.get_running_loop().create_future()
         serving = asyncio.create_task(server.run(ready.set_result))
         try:
