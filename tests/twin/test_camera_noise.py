@@ -45,6 +45,15 @@ def test_depth_of_a_facing_wall_has_the_published_spread(distance: float) -> Non
     assert abs(middles.mean()) < 4 * middles.std() / np.sqrt(middles.size)
 
 
+def test_a_wall_at_right_angles_to_the_view_of_a_pixel_is_measured_there() -> None:
+    # Single precision makes the cosine of one pixel of this wall a little more than 1.
+    normal = np.array([np.sin(-0.32277326), np.sin(-0.11193327), 1.0])
+    normal /= np.linalg.norm(normal)
+    depth = 0.6572387461374283 / (CAMERA.rays() @ normal)
+    measured = kinect_noise(frame_of(depth), np.random.default_rng(5), CAMERA).depth
+    assert np.isfinite(measured).all()
+
+
 @pytest.mark.parametrize("degrees", [30, 50, 62])
 def test_a_slanted_wall_is_noisier_as_published(degrees: int) -> None:
     angle = np.deg2rad(degrees)

@@ -71,8 +71,8 @@ def kinect_noise(frame: RgbdFrame, rng: np.random.Generator, camera: CameraModel
     from_column = np.clip(columns + _LATERAL_STEPS[draws[1]], 0, shape[1] - 1)
     measured = z.copy()
     measured[rows, columns] = z[from_row, from_column]
-    # Beyond 80° nothing is measured, so that the formula's pole is never met.
-    angle = np.arccos(np.maximum(cosine, np.float32(_COS_STEEPEST)))
+    # Beyond 80° nothing is measured, so that the formula's pole is never met; rounding may leave a cosine above 1.
+    angle = np.arccos(np.clip(cosine, np.float32(_COS_STEEPEST), np.float32(1.0)))
     measured += axial_sigma(safe, angle) * rng.standard_normal(shape, dtype=np.float32)
     sensor = camera.sensor
     if sensor.step > 0:
