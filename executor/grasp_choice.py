@@ -13,8 +13,10 @@ from twin.grasp_poses import GraspPose, grasp_poses
 
 APPROACH = 0.08
 """How far [m] before the grasp the hand comes onto the straight way to it."""
-BACK = (1.0, 0.6)
+BACK = (1.0, 0.6, 0.3)
 """Parts of that way by which it draws back."""
+UPWARDS = 0.7
+"""A hand that points down by this much (cosine) may go straight up too: what stood between its fingers stays."""
 DEPTHS = (0.012, 0.006, 0.0, -0.006)
 """How much deeper than the middle of the pads the hand goes in where there is room [m]."""
 OPENINGS = (0.016, 0.010)
@@ -107,11 +109,17 @@ def choose_grasp(
 
 
 def way_back(motions: ArmMotions, start: FloatArray) -> Trajectory | None:
-    """The way of the hand straight back from a grasp at a posture (n,) [rad]; None if there is none."""
+    """The way of the hand straight back from a grasp at a posture (n,) [rad], or up if it must; None if there is none.
+
+    A hand that came from above goes up as it goes back.
+    """
     at = motions.arm.forward_kinematics(start)
     approach = rotation_matrix(at.orientation_xyzw) @ motions.arm.gripper.approach
-    for part in BACK:
-        leaving = motions.plan_straight(start, moved(at, -part * APPROACH * approach), GENTLE).trajectory
-        if leaving is not None:
-            return leaving
+    for way in (-approach, np.array([0.0, 0.0, 1.0])):
+        for part in BACK:
+            leaving = motions.plan_straight(start, moved(at, part * APPROACH * way), GENTLE).trajectory
+            if leaving is not None:
+                return leaving
+        if way[2] < UPWARDS:
+            break
     return None

@@ -11,7 +11,7 @@ GAIN = 1.2e-4
 so that what is lacking is halved in some 0.08 s."""
 EASE = 4.0
 """So many times as fast it gives way to what is too much: what tilts under a hand jams, and pushes it harder."""
-TOO_MUCH = 2.5
+TOO_MUCH = 1.8
 """So many times the wanted force tells that something jams: the hand leaves it,"""
 JAMMED = 0.05
 """if it lasts so long [s]: not when it touches."""

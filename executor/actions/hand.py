@@ -22,7 +22,7 @@ from executor.actions.primitives import (
 from executor.actions.step_aside import step_aside
 from executor.actions.things import clear_below, pose_of
 from executor.actions.touching_hand import TouchingHand
-from executor.arm_motions import WAY_CLEARANCE, ArmMotions
+from executor.arm_motions import ArmMotions
 from executor.follow import wait
 from executor.handled import Handled
 from executor.handling import CarryPlan, Handling
@@ -33,6 +33,8 @@ SETTLE = 0.3
 """Time [s] in which everything comes to rest before an action begins."""
 FALL = 0.5
 """Time [s] in which what is let go of in the air falls."""
+LEAST_DROP = 0.02
+"""An object is lowered onto its destination from where it is carried now, or from so far above [m] at least."""
 IN_AIR = 0.01
 """An object is in the air with so much free height below it [m]."""
 
@@ -186,7 +188,7 @@ class ActingHand:
     def _find_carry(self, goal: FloatArray) -> CarryPlan | None:
         """A carry to the goal, turned about the vertical where that is needed."""
         here = pose_of(self._world.state(), self._object).position
-        drop = max(float(here[2] - goal[2]), WAY_CLEARANCE)  # it is lowered from where it is now, if that is above
+        drop = max(float(here[2] - goal[2]), LEAST_DROP)
         offset = np.append(goal[:2] - here[:2], goal[2] + drop - here[2])
         tries: list[tuple[float, FloatArray | None]] = [(turn, None) for turn in TURNS]
         if self._destination is not None:

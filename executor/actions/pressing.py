@@ -1,5 +1,8 @@
 """Pressing an object from above: a way straight down on which it is met around its middle."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from executor.actions.closed_hand import DOWN, Approach, contacts, hand_turns
@@ -22,8 +25,16 @@ SHORT = 0.003
 """So far [m] above what is pressed the hand goes on by feeling."""
 AIMINGS = 3
 """How often the hand's aim is corrected so that what touches is over the middle."""
+RIM = 0.4
+"""What is met nowhere nearer to the middle than this part of half the width is a rim."""
+LAID = 1.1
+"""From this tilt [rad] on a hand lies across a rim; a steeper one goes in and sticks:"""
+WEDGED = 0.75
+"""that is as bad as to meet it so much farther from the middle."""
 CENTRED = 0.25
-"""What is pressed within this part of half its width from its middle does not tip."""
+"""What is pressed within this part of half its width from its middle does not tip at all,"""
+STEADY = 0.6
+"""and within this part not if the hand lies on it broadly."""
 
 
 def press_approach(motions: ArmMotions, object_id: int) -> Approach | str:
@@ -35,37 +46,73 @@ def press_approach(motions: ArmMotions, object_id: int) -> Approach | str:
         TwinError: There is no such object.
     """
     corners = corners_of(motions.world, object_id)
-    lower, upper = corners.min(axis=0), corners.max(axis=0)
-    middle, half = (lower + upper) / 2, float((upper - lower)[:2].min()) / 2
     whole = motions.around(detailed={object_id})
     beside = motions.around(without={object_id})
     reached, best = False, None
-    for turn in hand_turns(motions, TILTS, middle):
-        aim = np.array(middle[:2])
-        for _ in range(AIMINGS):
-            way = _way_down(motions, whole, beside, Pose(np.append(aim, upper[2]), turn), upper[2] - lower[2])
-            if way is None:
+    for tilt in TILTS:
+        for turn in hand_turns(motions, (tilt,), (corners.min(axis=0) + corners.max(axis=0)) / 2):
+            for meeting in _aimed(motions, whole, beside, corners, turn, object_id):
+                reached = True
+                if meeting.rim and tilt < LAID:
+                    meeting = replace(meeting, off=meeting.off + WEDGED)
+                if best is None or meeting.off < best.off:
+                    best = meeting
+            if best is not None and best.off < CENTRED:
                 break
-            reached = True
-            met, touching = contacts(motions, whole, way, object_id)
-            if touching is None:
-                break
-            aside = middle[:2] - met[:, :2].mean(axis=0)
-            off = float(np.linalg.norm(aside)) / half
-            if best is None or off < best[0]:
-                best = off, way, touching
-            if off < CENTRED:
-                break
-            aim = aim + aside
-        if best is not None and best[0] < CENTRED:
+        if best is not None and best.off < STEADY:
             break
-    if best is not None and best[0] < 1.0:
-        near = _until(motions, best[1], best[2])
+    if best is not None and best.off < 1.0:
+        near = _until(motions, best.way, best.touching)
         if near is not None:
-            return Approach(best[1].at(0.0)[0], near, DOWN)
+            return Approach(best.way.at(0.0)[0], near, DOWN)
     if not reached:
         return "out of reach: no free way brings the hand down onto the object"
     return "no room: the hand meets the object only beside its middle"
+
+
+@dataclass(frozen=True, slots=True)
+class _Meeting:
+    """How a way down meets an object.
+
+    Attributes:
+        way: The way.
+        touching: Posture at which the hand touches first, (n,) [rad].
+        off: Distance of the middle of what is met from the object's, in half widths.
+        rim: Whether nothing near the middle is met.
+    """
+
+    way: Trajectory
+    touching: FloatArray
+    off: float
+    rim: bool
+
+
+def _aimed(
+    motions: ArmMotions,
+    whole: CollisionModel,
+    beside: CollisionModel,
+    corners: FloatArray,
+    turn: FloatArray,
+    object_id: int,
+) -> Iterator[_Meeting]:
+    """Ways down with a hand held one way, each aimed better than the one before, until it is centred."""
+    lower, upper = corners.min(axis=0), corners.max(axis=0)
+    middle, half = (lower + upper) / 2, float((upper - lower)[:2].min()) / 2
+    aim = np.array(middle[:2])
+    for _ in range(AIMINGS):
+        way = _way_down(motions, whole, beside, Pose(np.append(aim, upper[2]), turn), float(upper[2] - lower[2]))
+        if way is None:
+            return
+        met, touching = contacts(motions, whole, way, object_id)
+        if touching is None:
+            return
+        away = np.linalg.norm(met[:, :2] - middle[:2], axis=1)
+        aside = middle[:2] - met[:, :2].mean(axis=0)
+        off = float(np.linalg.norm(aside)) / half
+        yield _Meeting(way, touching, off, float(away.min()) > RIM * half)
+        if off < CENTRED:
+            return
+        aim = aim + aside
 
 
 def _way_down(
