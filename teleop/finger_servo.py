@@ -40,9 +40,7 @@ class FingerServo:
 
     def measured(self, openings: Mapping[str, float]) -> dict[str, float]:
         """Gaps of all grippers [m]: as measured, else as told, else the widest."""
-        return {
-            name: openings.get(name, self._told.get(name, widest)) for name, widest in self._widest.items()
-        }  # fmt: skip
+        return {name: openings.get(name, self._told.get(name, widest)) for name, widest in self._widest.items()}
 
     def tell(self, command: DriveCommand, openings: Mapping[str, float], guard: ServoGuard) -> dict[str, str]:
         """Take a command, and see whether the fingers may move on.

@@ -100,16 +100,12 @@ class IncrementalMixture(NumberedComponents):
         renamed = self._close_gaps(first_new)
         return [renamed.get(number, number) for number in numbers]
 
-    def classify(self, values: FloatArray) -> NDArray[np.int64]:
-        """Concept number of the most likely concept (eq. 3.1, weighted) for each embedded value, (..., d) to (...).
+    def classify_with_distance(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        """The most likely concept (eq. 3.1, weighted) and the Mahalanobis distance to it, both (...).
 
         Raises:
             PerceptionError: There is no concept yet.
         """
-        return self.classify_with_distance(values)[0]
-
-    def classify_with_distance(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
-        """Like `classify`, with the Mahalanobis distance to that concept, both (...)."""
         if not self._components:
             raise PerceptionError(f"nothing is known of feature space '{self.space.name}' yet: learn from a demo first")
         if self._prepared is None:

@@ -1,11 +1,16 @@
 """Components under numbers that keep their meaning as learning goes on: what all mixtures of concepts share."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 
+import numpy as np
+from numpy.typing import NDArray
+
 from learning.concepts.gaussian import Gaussian
+from robots.pose import FloatArray
 
 
-class NumberedComponents:
+class NumberedComponents(ABC):
     """Numbers are never used twice: that of a component that was merged into another is an alias of that one's."""
 
     def __init__(self) -> None:
@@ -42,3 +47,15 @@ class NumberedComponents:
         while number in self._aliases:
             number = self._aliases[number]
         return number
+
+    def classify(self, values: FloatArray) -> NDArray[np.int64]:
+        """Concept number of each embedded value, (..., d) to (...).
+
+        Raises:
+            PerceptionError: There is no concept yet.
+        """
+        return self.classify_with_distance(values)[0]
+
+    @abstractmethod
+    def classify_with_distance(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        """Like `classify`, with the distance to that concept, both (...)."""

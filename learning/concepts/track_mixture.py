@@ -120,16 +120,12 @@ class TrackMixture(NumberedComponents):
         self._prepared = None
         return [renamed.get(number, number) for number in numbers]
 
-    def classify(self, values: FloatArray) -> NDArray[np.int64]:
-        """Concept number of the nearest concept, all kinds taken to spread alike, (..., d) to (...).
+    def classify_with_distance(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        """The nearest concept, all kinds taken to spread alike, and its distance in standard deviations, both (...).
 
         Raises:
             PerceptionError: There is no concept yet.
         """
-        return self.classify_with_distance(values)[0]
-
-    def classify_with_distance(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
-        """Like `classify`, with the distance in standard deviations of a kind, both (...)."""
         if not self._components:
             raise PerceptionError(f"nothing is known of feature space '{self.space.name}' yet: learn from a demo first")
         if self._prepared is None:

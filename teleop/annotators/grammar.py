@@ -96,14 +96,7 @@ class English:
         """See `Grammar`."""
         if (second or verb) in _MOVING and where.startswith(_PLACES):
             where = f"to {where[3:]}"
-        ending = f" {where}" if where else ""
-        if order == "two steps" and where:
-            return f"{verb} {noun.text} and {_with_it(second)}{ending}"
-        if order == "topic":
-            return f"{noun.text}, {_with_it(verb)}{ending}"
-        if order == "destination first" and where:
-            return f"{where} {verb} {noun.text}"
-        return f"{verb} {noun.text}{ending}"
+        return _ordered(order, verb, noun.text, where, f" and {_with_it(second)}", f", {_with_it(verb)}")
 
     def with_politeness(self, sentence: str, word: str) -> str:
         """See `Grammar`."""
@@ -147,18 +140,39 @@ class Arabic:
         """See `Grammar`."""
         if (second or verb) in arabic.MOVING and where.startswith(arabic.PLACES):
             where = f"إلى{where.removeprefix('في')}"
-        ending = f" {where}" if where else ""
-        if order == "two steps" and where:
-            return f"{verb} {noun.text} و{arabic.joined(second, noun.gender)}{ending}"
-        if order == "topic":
-            return f"{noun.text}، {arabic.joined(verb, noun.gender)}{ending}"
-        if order == "destination first" and where:
-            return f"{where} {verb} {noun.text}"
-        return f"{verb} {noun.text}{ending}"
+        return _ordered(
+            order,
+            verb,
+            noun.text,
+            where,
+            f" و{arabic.joined(second, noun.gender)}",
+            f"، {arabic.joined(verb, noun.gender)}",
+        )
 
     def with_politeness(self, sentence: str, word: str) -> str:
         """See `Grammar`."""
         return f"{word} {sentence}"
+
+
+def _ordered(order: Order, verb: str, noun: str, where: str, and_second: str, then_verb: str) -> str:
+    """The parts of a command in an order.
+
+    Args:
+        order: The order.
+        verb: What to do.
+        noun: With what.
+        where: Where to; empty for nowhere.
+        and_second: Follows the noun where a second verb brings it there.
+        then_verb: Follows a noun that comes first.
+    """
+    ending = f" {where}" if where else ""
+    if order == "two steps" and where:
+        return f"{verb} {noun}{and_second}{ending}"
+    if order == "topic":
+        return f"{noun}{then_verb}{ending}"
+    if order == "destination first" and where:
+        return f"{where} {verb} {noun}"
+    return f"{verb} {noun}{ending}"
 
 
 GRAMMARS: dict[str, Grammar] = {"en": English(), "ar": Arabic()}
