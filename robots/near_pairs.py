@@ -116,6 +116,7 @@ class NearPairs:
         self.contacts: BoolArray = (touching[first] & thing[second]) | (touching[second] & thing[first])
         self._columns = self.own.columns
         self.matrix = self._matrix()
+        self.moved_by = self._moving()
         self._still, self._added = self._open(), dict[tuple[float, ...], FloatArray]()
         self._row: tuple[Pose, FloatArray] | None = None
         self._rows: tuple[Pose, FloatArray] | None = None
@@ -175,14 +176,20 @@ class NearPairs:
         """How far the two of each pair go at most, one against the other, by sums of levers, (len(which),) [m]."""
         return np.asarray(sums[self.scene.one[which]] + sums[self.scene.other[which]])
 
-    def moved_by(self, which: IntArray) -> BoolArray:
-        """Which motions of driven joints, and of the base, change distances of pairs, (n + 2,)."""
-        scene, width = self.scene, self.scene.reach.shape[1] + 1
-        moves = np.zeros(len(self.matrix) + 2, dtype=np.bool_)
-        for cell in (*scene.one[which].tolist(), *scene.other[which].tolist()):
-            row, behind = divmod(cell, width)
-            moves[scene.lever[row, behind:][scene.reach[row, behind:] > 0.0]] = True
-        return np.concatenate(((self.matrix != 0.0).T @ moves[:-2], moves[-2:]))
+    def _moving(self) -> BoolArray:
+        """Which motions of driven joints, and of the base, change distances of each pair, (k, n + 2)."""
+        scene = self.scene
+        rows, width = scene.reach.shape
+        # Of each shape, what joints from the d-th on do, for d from 0 to the last.
+        moves = np.zeros((rows, width + 1, len(self.matrix) + 2), dtype=np.bool_)
+        for d in reversed(range(width)):
+            moves[:, d] = moves[:, d + 1]
+            some = np.flatnonzero(scene.reach[:, d] > 0.0)
+            moves[some, d, scene.lever[some, d]] = True
+        cells = moves.reshape(-1, moves.shape[2])
+        driven = (cells[:, :-2].astype(np.float64) @ (self.matrix != 0.0)) > 0.0
+        cells = np.concatenate((driven, cells[:, -2:]), axis=1)
+        return np.asarray(cells[scene.one] | cells[scene.other])
 
     def _chosen(self, shapes: Sequence[Shape]) -> tuple[IntArray, IntArray]:
         """Which shapes make the pairs, (k,) each; see `CollisionModel`."""

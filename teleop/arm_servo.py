@@ -1,11 +1,13 @@
 """One arm's wishes as joint velocities: smoothed, held to a reference pose, slowed early for what lies ahead."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robots import ArmModel, RobotModel
+from robots.ik_kernel import compiled
 from robots.kinematics import Kinematics
 from robots.pose import FloatArray
 
@@ -83,6 +85,7 @@ class ArmServo:
         self._profile = VelocityProfile((1.0,) * 6, (1.0,) * 6, together=True)
         self._reference = ReferencePose()
         self._inverse = np.zeros((self._n, self._rows))
+        self._all = np.ones(self._n, dtype=np.bool_)
         self.rest()
         self.intend(ArmWish((0.01,) * 6), 1.0, arm.home, None, 0.01)
         self.rest()
@@ -90,7 +93,7 @@ class ArmServo:
     def rest(self) -> None:
         """Forget twist and reference."""
         self._twist: FloatArray = np.zeros(6)
-        self._rate: tuple[float, ...] = (0.0,) * 6
+        self._rate: FloatArray = np.zeros(6)
         self._velocity: FloatArray = np.zeros(self._n)
         self._near_singular = False
         self._vectors = np.eye(self._rows)[[0, -1]]
@@ -127,17 +130,16 @@ class ArmServo:
         if wish.jog is not None:
             return self._jogged(wish.jog[0], wish.jog[1] * ratio, jacobian)
         axes = rotation if axes is None else axes
-        twist = ratio * np.array(wish.twist)
-        asked = np.concatenate((axes @ twist[:3], axes @ twist[3:]))
+        asked = _along(np.ascontiguousarray(axes), np.array(wish.twist), ratio)
         if not any(wish.twist) and float(np.abs(self._twist).max()) < ENDED:
             self.rest()
             n = self._n
-            return ArmIntent(asked, np.zeros(n), jacobian, np.zeros(n, bool), DriveReason.NONE)
+            return ArmIntent(asked, np.zeros(n), jacobian, ~self._all, DriveReason.NONE)
         wanted = asked.copy()
         reason, detail = DriveReason.NONE, ""
         if self._rows == 3:
             wanted[3:] = 0.0
-            if asked[3:].any():
+            if any(wish.twist[3:]):
                 reason, detail = DriveReason.UNREACHABLE, f"arm {self.arm.name} cannot turn its tool"
         part, limit, joint = self._look_ahead(wanted, q)
         if part < 1.0:
@@ -154,7 +156,7 @@ class ArmServo:
         twist = self._twist + self._reference.correction(position, rotation, self._twist)
         # In the middle of the way that the period leads over, so that nothing is left by its bending.
         velocity = joint_velocities(*self._model, q + (0.5 * dt) * self._velocity, twist[: self._rows])
-        return ArmIntent(asked, velocity, jacobian, np.ones(self._n, bool), reason, detail)
+        return ArmIntent(asked, velocity, jacobian, self._all, reason, detail)
 
     def _jogged(self, joint: int, speed: float, jacobian: FloatArray) -> ArmIntent:
         velocity = np.zeros(self._n)
@@ -166,7 +168,8 @@ class ArmServo:
 
     def _look_ahead(self, wanted: FloatArray, q: FloatArray) -> tuple[float, int, int]:
         """How much of a wanted twist (6,) may be executed, what limits it, and the joint."""
-        ends = not wanted.any()
+        size = float(wanted @ wanted)
+        ends = size == 0.0
         way = self._twist if ends else wanted
         size = float(way @ way)
         if size < _MOVING * _MOVING:
@@ -184,23 +187,87 @@ class ArmServo:
 
     def _smoothed(self, wanted: FloatArray, dt: float) -> FloatArray:
         """The ideal twist (6,) a period later, on a straight line to the wanted one that the joints can follow."""
-        change = wanted - self._twist
-        size = float(np.linalg.norm(change))
-        if size < _MOVING:
-            self._rate = (0.0,) * 6
+        limits, jerks, rate = _changes(
+            wanted,
+            self._twist,
+            self._rate,
+            self._velocity,
+            self._inverse,
+            self._weights,
+            self.arm.acceleration,
+            self.arm.jerk,
+        )
+        if not limits[0]:
+            self._rate = np.zeros(6)
             return wanted
-        way = change / size
-        joints = np.maximum(np.abs(self._inverse @ (self._weights * way[: self._rows])), _MOVING)
-        if (speed := float(np.linalg.norm(self._twist))) > ENDED:
-            # Joints that give way to others move, and have to brake, faster than the tool alone would have them.
-            joints = np.maximum(joints, np.abs(self._velocity) * (abs(float(way @ self._twist)) / (speed * speed)))
-        acceleration = min(CHANGING * float((self.arm.acceleration / joints).min()), MOST_ACCELERATION)
-        jerk = min(JERKING * float((self.arm.jerk / joints).min()), RISE * MOST_ACCELERATION)
-        # Axes that do not change now may still have to end a change.
-        turning = np.abs(self._rate) / max(float(np.linalg.norm(self._rate)), _MOVING)
-        parts = np.maximum(np.maximum(np.abs(way), turning), 0.02)
-        limits = acceleration * parts
-        self._profile.limit(limits.tolist(), (jerk * parts).tolist())
-        rate = np.clip(self._rate, -limits, limits).tolist()
-        twist, self._rate = self._profile.after(self._twist.tolist(), rate, wanted.tolist(), dt)
+        self._profile.limit(limits.tolist(), jerks.tolist())
+        twist, rates = self._profile.after(self._twist.tolist(), rate.tolist(), wanted.tolist(), dt)
+        self._rate = np.array(rates)
         return np.array(twist)
+
+
+@compiled
+def _along(axes: FloatArray, twist: FloatArray, ratio: float) -> FloatArray:
+    """A twist (6,), scaled, from a frame whose axes are the columns of a matrix (3, 3)."""
+    found = np.zeros(6)
+    for i in range(3):
+        for k in range(3):
+            found[i] += ratio * axes[i, k] * twist[k]
+            found[3 + i] += ratio * axes[i, k] * twist[3 + k]
+    return found
+
+
+@compiled
+def _changes(
+    wanted: FloatArray,
+    twist: FloatArray,
+    rate: FloatArray,
+    velocity: FloatArray,
+    inverse: FloatArray,
+    weights: FloatArray,
+    acceleration: FloatArray,
+    jerk: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Limits of how a twist (6,) changes to a wanted one so that joints can follow, and its rate inside them.
+
+    Args:
+        wanted: Twist, (6,).
+        twist: The ideal one now, (6,).
+        rate: Its rate, (6,).
+        velocity: Of the n joints [rad/s].
+        inverse: Of the weighted Jacobian, (n, m).
+        weights: Of its rows, (m,).
+        acceleration: Limits, (n,) [rad/s²].
+        jerk: Limits, (n,) [rad/s³].
+
+    Returns:
+        Limits of acceleration and jerk of each part, (6,) each, zeros where there is no change; the rate, (6,).
+    """
+    limits, jerks, held = np.zeros(6), np.zeros(6), np.zeros(6)
+    size = speed = turning = along = 0.0
+    for i in range(6):
+        size += (wanted[i] - twist[i]) ** 2
+        speed += twist[i] ** 2
+        turning += rate[i] ** 2
+        along += (wanted[i] - twist[i]) * twist[i]
+    size, speed, turning = math.sqrt(size), math.sqrt(speed), max(math.sqrt(turning), _MOVING)
+    if size < _MOVING:
+        return limits, jerks, held
+    way = (wanted - twist) / size
+    most, roughest = MOST_ACCELERATION, RISE * MOST_ACCELERATION
+    for k in range(velocity.size):
+        joint = 0.0
+        for i in range(weights.size):
+            joint += inverse[k, i] * weights[i] * way[i]
+        joint = max(abs(joint), _MOVING)
+        if speed > ENDED:
+            # Joints that give way to others move, and have to brake, faster than the tool alone would have them.
+            joint = max(joint, abs(velocity[k]) * abs(along / size) / (speed * speed))
+        most = min(most, CHANGING * acceleration[k] / joint)
+        roughest = min(roughest, JERKING * jerk[k] / joint)
+    for i in range(6):
+        # Axes that do not change now may still have to end a change.
+        part = max(abs(way[i]), abs(rate[i]) / turning, 0.02)
+        limits[i], jerks[i] = most * part, roughest * part
+        held[i] = min(max(rate[i], -limits[i]), limits[i])
+    return limits, jerks, held

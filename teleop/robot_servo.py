@@ -23,7 +23,7 @@ from .errors import ServoError
 from .finger_servo import FingerServo
 from .servo_brakes import ServoBrakes, State
 from .servo_camera import body_axes, camera_axes_in_base
-from .servo_guard import IntArray, ServoGuard
+from .servo_guard import BoolArray, IntArray, ServoGuard
 from .servo_input import why_to_stop
 from .servo_notes import ServoNotes
 from .servo_outcome import outcome
@@ -32,6 +32,7 @@ from .servo_result import RobotServoResult, ServoView
 from .speed_limiter import SpeedLimiter, note_pair
 
 _NOTHING: Mapping[str, Sequence[Obstacle]] = {}
+_SAME: FloatArray = np.eye(3)
 
 
 class RobotServo:
@@ -62,6 +63,8 @@ class RobotServo:
         self._n, self._d = len(robot.joint_names), len(self._brakes.names)
         self._camera = camera_axes_in_base(robot)
         self._state: State | None = None
+        base = robot.pose_base_in_world
+        self._turned = base, rotation_matrix(base.orientation_xyzw)
         self._fingers = FingerServo(robot)
         self._guard = ServoGuard(robot, obstacles, held)
         self._warm_up()
@@ -96,7 +99,9 @@ class RobotServo:
         """
         q = self._checked(view, dt)
         base = view.pose_base_in_world or self.robot.pose_base_in_world
-        turn = rotation_matrix(base.orientation_xyzw)
+        if base is not self._turned[0]:
+            self._turned = base, rotation_matrix(base.orientation_xyzw)
+        turn = self._turned[1]
         if self._state is None:
             self._state = self._brakes.first([*view.dq.tolist(), *([0.0] * (self._d - self._n))])
         stop, why = why_to_stop(command, self.robot)
@@ -145,7 +150,7 @@ class RobotServo:
             if wish.frame == "world":
                 axes = turn.T
             elif wish.frame == "base":
-                axes = np.eye(3)
+                axes = _SAME
             elif wish.frame == "camera":
                 seen = view.camera_xyzw if command.camera_xyzw is None else np.array(command.camera_xyzw)
                 axes = self._camera if seen is None else turn.T @ body_axes(seen)
@@ -188,10 +193,14 @@ class RobotServo:
                     moved[where] = True
                     if any(goal[where]):
                         note_pair(notes, self._guard, name, int(bad[0]))
-            goal = np.where(moved, 0.0, target).tolist()
-            state = self._within_positions(goal, False, q, dt, notes)
-            if any(goal) and len(self._offending(state, q, base, dt)):
-                state = self._brakes.after(self._state, [0.0] * self._d, dt)
+            brakes = self._brakes.after(self._state, [0.0] * self._d, dt)
+            if moved.all():
+                state = brakes
+            else:
+                state = _mixed(moved, brakes, state)
+                # Of what brakes, and of what goes on, all is known: but not of the two together.
+                if len(self._offending(state, q, base, dt, moved)):
+                    state = brakes
         self._state = state
         return np.array(state[0])
 
@@ -216,12 +225,24 @@ class RobotServo:
                 name = next(name for name, where in self._slices.items() if where.start <= i < where.stop)
                 notes.note(name, DriveReason.POSITION_LIMIT, self._brakes.names[i], slides=True)
 
-    def _offending(self, state: State, q: FloatArray, base: Pose, dt: float) -> IntArray:
-        """Pairs that keep a state from being taken."""
+    def _offending(
+        self, state: State, q: FloatArray, base: Pose, dt: float, between: BoolArray | None = None
+    ) -> IntArray:
+        """Pairs that keep a state from being taken; only those between some speeds (d,) and the others if given."""
         way = self._brakes.way(state, dt)
         if way is None:
             return np.zeros(0, dtype=np.int64)
         bases = [base] * len(way)
         if self._d > self._n and way[:, self._n :].any():
             bases = rolled(base, way[:, self._n :])
-        return self._guard.offending(way, bases)
+        return self._guard.offending(way, bases, between)
+
+
+def _mixed(which: BoolArray, one: State, other: State) -> State:
+    """One state for some speeds (d,), and another for the rest."""
+    some = which.tolist()
+    speeds, rates = (
+        tuple(a if first else b for first, a, b in zip(some, *both, strict=True))
+        for both in zip(one, other, strict=True)
+    )
+    return speeds, rates

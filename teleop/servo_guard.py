@@ -87,6 +87,7 @@ class ServoGuard:
         self._floor = np.where(self.contacts, PRESS_MOST, FLOOR)
         self._dofs = len(robot.joint_names) + (2 if robot.drive is not None else 0)
         self._openings: Mapping[str, float] = {}
+        self._kept: dict[bytes, FloatArray] = {}
         if own is None:
             self._warm_up()
 
@@ -151,14 +152,16 @@ class ServoGuard:
         least = _least(rows, np.ascontiguousarray(wanted), braking, room)
         return Dampers(rows, least, which)
 
-    def offending(self, way: FloatArray, bases: Sequence[Pose]) -> IntArray:
+    def offending(self, way: FloatArray, bases: Sequence[Pose], between: BoolArray | None = None) -> IntArray:
         """Pairs that come too near on a way; empty if the way may be gone.
 
         Args:
             way: Where joints and base are after parts of the way, as differences from here, (m, dofs).
             bases: Where the base stands then, m of them.
+            between: Only pairs that some of these speeds move and some of the others, (dofs,); None for all.
         """
-        least, now, end = self._least, self._now, self._end
+        now, end = self._now, self._end
+        least = self._least if between is None else self._least_between(between)
         ends, which, where, along, sums = now.look_ahead(end, np.ascontiguousarray(way), bases, least)
         if not len(ends) and not len(which):
             return which
@@ -178,7 +181,16 @@ class ServoGuard:
 
     def moved_by(self, pairs: IntArray) -> BoolArray:
         """Which speeds change distances of pairs, (dofs,)."""
-        return self._pairs.moved_by(pairs)[: self._dofs]
+        return np.asarray(self._pairs.moved_by[pairs, : self._dofs].any(axis=0))
+
+    def _least_between(self, some: BoolArray) -> FloatArray:
+        """Distances that braking must keep, (k,) [m], none for pairs that only some speeds (dofs,), or others, move."""
+        key = some.tobytes()
+        if key not in self._kept:
+            moved = self._pairs.moved_by[:, : self._dofs]
+            both = moved[:, some].any(axis=1) & moved[:, ~some].any(axis=1)
+            self._kept[key] = np.where(both, self._least, -np.inf)
+        return self._kept[key]
 
     def _worse(self, near: IntArray, way: FloatArray) -> BoolArray:
         """Which pairs that end too near are not on their way out."""

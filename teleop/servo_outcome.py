@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from robots import RobotModel
+from robots.ik_kernel import compiled
 from robots.pose import FloatArray
 
 from .arm_servo import ArmIntent
@@ -46,23 +47,26 @@ def outcome(
     arms, lines = {}, []
     moves = asks = False
     for name, intent in intents.items():
-        executed = intent.jacobian @ velocity[robot.slice_of(name)]
+        asked, executed, apart, speed = _compared(
+            np.ascontiguousarray(intent.jacobian), velocity[robot.slice_of(name)], intent.asked, turn
+        )
         reason, detail = notes[name]
         if stopping:
             reason, detail = stop
-        elif float(np.abs(executed - intent.asked).max()) <= AGREE_WITHIN and name not in notes.always:
+        elif apart <= AGREE_WITHIN and name not in notes.always:
             reason, detail = DriveReason.NONE, ""
         elif reason is DriveReason.NONE:
             reason = DriveReason.ACCELERATION_LIMIT
-        asks |= bool(intent.asked.any())
-        moves |= bool(np.abs(executed).max() > REST)
+        asks |= any(intent.asked.tolist())
+        moves |= speed > REST
         if reason is not DriveReason.NONE:
             lines.append(f"{name}: {reason}" + (f" ({detail})" if detail else ""))
-        arms[name] = ArmResult(_turned(turn, intent.asked), _turned(turn, executed), reason, detail)
+        arms[name] = ArmResult(asked, executed, reason, detail)
     driven = robot.drive is not None
     base_twist = velocity[n:] if driven else np.zeros(2)
     base_reason, base_detail = DriveReason.NONE, ""
-    if np.abs(base_twist - base_asked).max() > AGREE_WITHIN:
+    rolled, rolling = base_twist.tolist(), base_asked.tolist()
+    if max(abs(done - wish) for done, wish in zip(rolled, rolling, strict=True)) > AGREE_WITHIN:
         base_reason, base_detail = notes[BASE]
         if not driven:
             base_reason, base_detail = DriveReason.UNREACHABLE, f"{robot.name} has no wheels"
@@ -72,8 +76,8 @@ def outcome(
     if stopping:
         base_reason, base_detail = stop
         lines = [f"{stop[0]} ({stop[1]})"]
-    asks |= bool(base_asked.any())
-    moves |= bool(np.abs(base_twist).max() > REST)
+    asks |= any(rolling)
+    moves |= max(map(abs, rolled)) > REST
     state: Literal["ok", "slowed", "stopped"] = "ok"
     if lines:
         state = "stopped" if stop[0] in STOPPING or (asks and not moves) else "slowed"
@@ -90,5 +94,32 @@ def outcome(
     )
 
 
-def _turned(rotation: FloatArray, twist: FloatArray) -> FloatArray:
-    return np.concatenate((rotation @ twist[:3], rotation @ twist[3:]))
+@compiled
+def _compared(
+    jacobian: FloatArray, velocity: FloatArray, asked: FloatArray, turn: FloatArray
+) -> tuple[FloatArray, FloatArray, float, float]:
+    """An arm's asked and executed twists along the axes of the world, (6,) each, and the largest parts of both.
+
+    Args:
+        jacobian: Along the axes of the base, (6, n).
+        velocity: Of the joints, (n,).
+        asked: Along the axes of the base, (6,).
+        turn: Rotation matrix of the base in the world, (3, 3).
+
+    Returns:
+        Both twists; the largest part of their difference and of what is executed.
+    """
+    executed = np.zeros(6)
+    apart = speed = 0.0
+    for i in range(6):
+        for k in range(velocity.size):
+            executed[i] += jacobian[i, k] * velocity[k]
+        apart = max(apart, abs(executed[i] - asked[i]))
+        speed = max(speed, abs(executed[i]))
+    turned, done = np.zeros(6), np.zeros(6)
+    for i in range(3):
+        for k in range(3):
+            for part in (0, 3):
+                turned[part + i] += turn[i, k] * asked[part + k]
+                done[part + i] += turn[i, k] * executed[part + k]
+    return turned, done, apart, speed

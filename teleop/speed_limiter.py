@@ -5,11 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from robots import RobotModel
+from robots.ik_kernel import compiled
 from robots.pose import FloatArray
 
 from .arm_servo import ArmIntent, ArmServo
 from .servo_brakes import ServoBrakes
-from .servo_guard import Dampers, ServoGuard
+from .servo_guard import BoolArray, Dampers, IntArray, ServoGuard
 from .servo_notes import BASE, ServoNotes
 from .servo_projection import project
 from .servo_reason import DriveReason
@@ -29,6 +30,7 @@ class SpeedLimiter:
         self.groups = {name: robot.slice_of(name) for name in robot.arms}
         if self._d > self._n:
             self.groups[BASE] = slice(self._n, self._d)
+        self._bounds = np.array([[where.start, where.stop] for where in self.groups.values()], dtype=np.int64)
 
     def limited(
         self,
@@ -42,43 +44,37 @@ class SpeedLimiter:
         target = self._scaled(wanted.copy(), notes)
         free = target != 0.0
         for name, intent in intents.items():
-            where = self.groups[name]
-            free[where] &= intent.free
-            if free[where].any():
-                free[where] = intent.free
-        columns = np.flatnonzero(free)
+            free[self.groups[name]] = intent.free
+        columns = _may_move(free, target, self._bounds)
         dampers = guard.dampers(target, self._brakes.half_times(target))
-        ends, limits, room = self._ends(columns.tolist(), q)
+        ends, limits, room = self._ends(columns, q)
         base, most = self._base_rows(target)
         rows = np.concatenate((dampers.rows, limits, base))
         least = np.concatenate((dampers.least, room, most))
         # Where columns are left out, what they do is nothing: their target is rest.
-        kept = rows[:, columns]
-        if not len(kept) or bool(np.all(kept @ target[columns] >= least)):
+        if not len(rows) or min((rows @ target - least).tolist()) >= 0.0:
             return target
+        kept = rows[:, columns]
         inverse_weight = np.eye(self._d)
         for name, intent in intents.items():
             where = self.groups[name]
-            if free[where].any():
+            if any(free[where].tolist()):
                 inverse_weight[where, where] = self._arms[name].inverse_weight(intent.jacobian)
         found, held = project(target[columns], inverse_weight[np.ix_(columns, columns)], kept, least)
         target[columns] = found
         self._explain(held, dampers, ends, rows, guard, notes)
         return self._scaled(target, notes)
 
-    def _ends(self, columns: Sequence[int], q: FloatArray) -> tuple[list[int], FloatArray, FloatArray]:
+    def _ends(self, columns: IntArray, q: FloatArray) -> tuple[list[int], FloatArray, FloatArray]:
         """Joints near their position limits, rows (k, d) of what they may not do, and how far they may (k,)."""
         down, up = self._brakes.room(q)
-        ends = [(i, sign) for i in columns for sign, room in ((-1.0, up[i]), (1.0, down[i]))
-                if room < self._brakes.velocity[i]]  # fmt: skip
-        rows, least = np.zeros((len(ends), self._d)), np.zeros(len(ends))
-        for row, (i, sign) in enumerate(ends):
-            rows[row, i] = sign
-            least[row] = -(up[i] if sign < 0.0 else down[i])
-        return [i for i, _ in ends], rows, least
+        joints, rows, least = _near_ends(columns, down, up, self._brakes.velocity, self._d)
+        return joints.tolist(), rows, least
 
     def _base_rows(self, target: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rows that keep the base from doing more than asked, or the opposite, to make way for something."""
+        if self._n == self._d:
+            return np.zeros((0, self._d)), np.zeros(0)
         rows, least = [], []
         for i in range(self._n, self._d):
             if target[i]:
@@ -91,7 +87,7 @@ class SpeedLimiter:
     def _scaled(self, speeds: FloatArray, notes: ServoNotes) -> FloatArray:
         """Speeds of each arm, and of the base, brought into their limits along their direction."""
         over = np.abs(speeds) / self._brakes.velocity
-        if over.max() > 1.0:
+        if max(over.tolist()) > 1.0:
             for name, where in self.groups.items():
                 if (ratio := float(over[where].max())) > 1.0:
                     speeds[where] /= ratio
@@ -123,3 +119,30 @@ def note_pair(notes: ServoNotes, guard: ServoGuard, name: str, pair: int) -> Non
     """Note a pair that holds an arm, or the base, back or turns it off its way."""
     reason = DriveReason.CONTACT if guard.contacts[pair] else DriveReason.COLLISION
     notes.note(name, reason, "{} and {}".format(*guard.names[pair]), slides=True)
+
+
+@compiled
+def _may_move(free: BoolArray, target: FloatArray, bounds: IntArray) -> IntArray:
+    """Speeds that avoiding things may change: those that may move (d,), of arms some of whose joints are to move."""
+    for group in range(bounds.shape[0]):
+        moves = False
+        for i in range(bounds[group, 0], bounds[group, 1]):
+            moves = moves or (free[i] and target[i] != 0.0)
+        if not moves:
+            free[bounds[group, 0] : bounds[group, 1]] = False
+    return np.flatnonzero(free)
+
+
+@compiled
+def _near_ends(
+    columns: IntArray, down: FloatArray, up: FloatArray, velocity: FloatArray, d: int
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """See `SpeedLimiter._ends`: for what may move (k,) the room to both sides beside its speed limit, (d,) each."""
+    joints, rows, least = np.empty(2 * columns.size, dtype=np.int64), np.zeros((2 * columns.size, d)), np.empty(2 * d)
+    count = 0
+    for i in columns:
+        for sign, room in ((-1.0, up[i]), (1.0, down[i])):
+            if room < velocity[i]:
+                joints[count], rows[count, i], least[count] = i, sign, -room
+                count += 1
+    return joints[:count], rows[:count], least[:count]

@@ -28,15 +28,17 @@ class VelocityProfile:
         self._input.max_acceleration = list(max_acceleration)
         self._input.max_jerk = list(max_jerk)
         self._input.current_position = [0.0] * n
-        self._rest = [0.0] * n
+        self._rest = (0.0,) * n
         self._trajectory = Trajectory(n)
         self._max_acceleration = tuple(max_acceleration)
+        self._asked: tuple[Sequence[float], ...] = ()
 
     def limit(self, max_acceleration: Sequence[float], max_jerk: Sequence[float]) -> None:
         """Set other limits, n each [rad/s², rad/s³]."""
         self._input.max_acceleration = list(max_acceleration)
         self._input.max_jerk = list(max_jerk)
         self._max_acceleration = tuple(max_acceleration)
+        self._asked = ()
 
     def after(
         self, velocity: Sequence[float], acceleration: Sequence[float], target: Sequence[float], dt: float
@@ -71,6 +73,10 @@ class VelocityProfile:
         return [self._trajectory.at_time(part * duration)[0] for part in parts], duration
 
     def _solve(self, velocity: Sequence[float], acceleration: Sequence[float], target: Sequence[float]) -> None:
+        if self._asked and velocity is self._asked[0] and acceleration is self._asked[1] and target is self._asked[2]:
+            return  # the way to rest is asked for twice a step
+        # Only what cannot change is known again by being the same.
+        self._asked = (velocity, acceleration, target) if type(velocity) is type(acceleration) is tuple else ()
         self._input.current_velocity = list(velocity)
         self._input.current_acceleration = list(acceleration)
         self._input.target_velocity = list(target)
