@@ -16,8 +16,6 @@ SECTOR = np.deg2rad(30.0)
 """A horizontal direction has a class within this of one of the four sides [rad]; what is between two has none."""
 STEEP = np.deg2rad(45.0)
 """Higher than this is above [rad]."""
-TOUCHING = 0.05
-"""Centres this close, or a hand that holds, are touching [m]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """From the tracks of one demo to its action graphlet (thesis 3.3.4)."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +56,7 @@ def shown_action(
     rows = np.stack([closed, touching, location], axis=1).astype(np.int64)
     rows = without_short_rows(rows, SHORTEST_STATE)
     states = _one_change_at_a_time(GraphletState(bool(c), bool(t), int(at)) for c, t, at in rows)
-    return ActionGraphlet.of(states), None, moved
+    return ActionGraphlet.of(_without_idle_ends(list(states))), None, moved
 
 
 def touches(observation: Observation, spaces: ConceptSpaces) -> NDArray[np.bool_]:
@@ -78,6 +78,17 @@ def _one_change_at_a_time(states: Iterable[GraphletState]) -> Iterator[GraphletS
                 yield GraphletState(False, True, grasping.object_location)
         yield state
         before = state
+
+
+def _without_idle_ends(states: Sequence[GraphletState]) -> Sequence[GraphletState]:
+    """Leave out what the hand does far from the object before it comes to it, and after it left it.
+
+    A hand that is away may be open or closed from whatever it did before; only as what it comes, and leaves, matters.
+    """
+    touching = [index for index, state in enumerate(states) if state.touching]
+    if not touching:
+        return states
+    return states[max(touching[0] - 1, 0) : touching[-1] + 2]
 
 
 def _location_variable(observation: Observation, moved: int) -> NDArray[np.int64]:

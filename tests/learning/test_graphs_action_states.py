@@ -1,5 +1,7 @@
 """Actions of hand-made tracks: key frames, and driven ones with slow approach, noise and flicker."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,6 +61,14 @@ def driven(kind: str, rng: np.random.Generator) -> Observation:
     location[:, MOVED] = block
     tracks = TrueTracks(FRAME_TIME * np.arange(len(grip)), np.array(grip), np.array(closed), location)
     return observed(tracks, OBJECTS, rng)
+
+
+def test_what_the_hand_does_before_it_comes_and_after_it_left_is_no_part_of_the_action(spaces: ConceptSpaces) -> None:
+    frames = key_frames(start_cells("move"), MOVED, PLANS["move"][1], "move")
+    shut = [replace(each, gripper_closed=True) for each in (frames[0], frames[-1])]
+    away = [replace(each, gripper_location=each.gripper_location + (0.0, 0.0, 0.1)) for each in shut]
+    busy = observe_key_frames([away[0]] * 4 + [*frames] + [away[1]] * 4, OBJECTS, np.random.default_rng(0))
+    assert action_of(busy, spaces) == MOVE
 
 
 @pytest.mark.parametrize("kind", PLANS)
