@@ -40,6 +40,12 @@ NEAR = 0.15
 """Farther pairs are left to the check of braking [m]."""
 TOLERANCE = 2e-6
 """The distance solver's own [m]."""
+DIP = 2e-5
+"""What distances along a way are estimated by may dip so far below what its end must keep [m].
+
+Estimates fall short the more, the longer a way is. Without this, a pair that stands right at its least distance could
+part by no more than rounding errors at a time.
+"""
 PARTS = tuple(number / 8 for number in range(1, 9))
 """Parts of the braking time at which the way is looked at."""
 
@@ -173,7 +179,9 @@ class ServoGuard:
             which, where = np.concatenate((which, others)), np.concatenate((where, np.zeros_like(others)))
         if len(which):
             start, last = now.refine(which), end.refine(which)
-            short = (start + last - self._pairs.gone(sums[-1], which) < 2.0 * least[which]) & (start >= least[which])
+            short = (start + last - self._pairs.gone(sums[-1], which) < 2.0 * (least[which] - DIP)) & (
+                start >= least[which]
+            )
             which, where = which[short], where[short]
         if len(which):
             bad = np.concatenate((bad, which[self._passes_too_near(which, where, along, bases, sums)]))
@@ -229,7 +237,7 @@ class ServoGuard:
 
         def doubtful(first: int, last: int, pairs: IntArray, before: FloatArray, after: FloatArray) -> BoolArray:
             travel = self._pairs.gone(sums[last] - sums[first], pairs)
-            return np.asarray(before + after - travel < 2.0 * self._least[pairs])
+            return np.asarray(before + after - travel < 2.0 * (self._least[pairs] - DIP))
 
         for first in sorted(set(where.tolist())):
             some = np.flatnonzero(where == first)

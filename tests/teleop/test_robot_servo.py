@@ -14,6 +14,7 @@ from teleop.base_servo import rolled
 from teleop.drive_command import ArmWish, DriveCommand
 from teleop.errors import ServoError
 from teleop.robot_servo import RobotServo
+from teleop.servo_guard import PRESS_MOST
 from teleop.servo_reason import DriveReason
 from teleop.servo_result import RobotServoResult, ServoView
 
@@ -29,10 +30,11 @@ class Driven:
         self.robot, self.servo = robot, RobotServo(robot, things)
         self.q = robot.home.copy() if q is None else q
         self.base = robot.pose_base_in_world
+        self.openings: dict[str, float] = {}
         self.speeds: list[np.ndarray] = []
 
     def view(self) -> ServoView:
-        return ServoView(self.q, np.zeros(len(self.q)), {}, self.base)
+        return ServoView(self.q, np.zeros(len(self.q)), self.openings, self.base)
 
     def go(
         self, command: DriveCommand, seconds: float, until: Callable[[RobotServoResult], bool] = lambda _: False
@@ -301,6 +303,27 @@ def test_fingers_may_press_slowly_and_not_deep() -> None:
     assert np.all(np.diff(distances)[touching] / DT > -0.05)
     up = driven.go(move("arm", 0.0, 0.0, 0.1), 0.5)
     assert up.arms["arm"].executed[2] == pytest.approx(0.1, abs=2e-3)
+
+
+@pytest.mark.parametrize("left", [1e-6, 1.9e-6, 1e-5])
+def test_fingers_that_press_as_deep_as_they_may_come_free(left: float) -> None:
+    q = np.array([0.7327, -0.3, 1.1267])
+    tool = THREE_DOF.forward_kinematics(q).position
+    table = box("table", (float(tool[0]), float(tool[1]), float(tool[2]) - 0.25), 0.5, 0.5, 0.3)
+    everything = CollisionModel(THREE_DOF, [table])
+    closed = {"arm": 0.0}
+    out, deep = q.copy(), q + (0.0, 0.4, 0.0)
+    for _ in range(60):  # to the last digit: what is left is all they may go on
+        middle = 0.5 * (out + deep)
+        if everything.nearest(middle, closed).distance > PRESS_MOST + left:
+            out = middle
+        else:
+            deep = middle
+    driven = Driven(THREE_DOF, (table,), out)
+    driven.openings = closed
+    up = driven.go(move("arm", 0.0, 0.0, 0.1), 0.3)
+    assert up.arms["arm"].executed[2] > 0.05
+    assert everything.nearest(driven.q, closed).distance > PRESS_MOST + 0.002
 
 
 def test_a_base_stops_before_a_pillar_and_drives_back() -> None:
