@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
+from learning.graphs.smoothing import constant_runs
 from learning.perception.gaps import box_size, face_distances, gap_offsets
 from learning.perception.observation import Observation
 from learning.perception.track_noise import track_noise
@@ -83,14 +84,44 @@ def touch_evidence(observation: Observation, variance: float = 0.0, mean: float 
 
 
 def holding_evidence(observation: Observation) -> FloatArray:
-    """For something being between the closed fingers rather than nothing, (F,); 0 where they are open, or move."""
+    """For something being between the closed fingers rather than nothing, (F,); 0 where they are open, or move.
+
+    A knife leaves no gap that could be felt. But fingers that are closed on nothing lift nothing: where an object rises
+    or sinks with the hand, they hold it.
+    """
     opening = observation.gripper_opening
     if opening is None:
         return np.zeros(len(observation.times))
     empty = -0.5 * (opening / EMPTY_NOISE) ** 2 + np.log(2.0 / (np.sqrt(2.0 * np.pi) * EMPTY_NOISE))
     change = np.abs(np.diff(opening, prepend=opening[:1]))
     stopped = observation.gripper_closed & (change < FINGERS_STILL)
-    return np.where(stopped, bounded(np.log(1.0 / WIDEST) - empty), 0.0)
+    evidence = np.where(stopped, bounded(np.log(1.0 / WIDEST) - empty), 0.0)
+    for start, stop in constant_runs(observation.gripper_closed):
+        if (
+            observation.gripper_closed[start]
+            and evidence[start:stop].sum() < 0.0
+            and _carries(observation, start, stop)
+        ):
+            evidence[start:stop] = np.where(stopped[start:stop], np.abs(evidence[start:stop]), 0.0)
+    return np.asarray(evidence)
+
+
+def _carries(observation: Observation, start: int, stop: int) -> bool:
+    """Whether an object that is seen rises or sinks with the hand in some frames."""
+    hand = observation.gripper_location[start:stop]
+    told = seen(observation)[start:stop] > 0.0
+    for index in range(observation.location.shape[1]):
+        track = observation.location[start:stop, index]
+        near = told[:, index] & (np.linalg.norm(track - hand, axis=1) < FRAGMENT)
+        if np.count_nonzero(near) < FIRST_FRAMES:
+            continue
+        height, between = track[near, 2], track[near, 2] - hand[near, 2]
+        # As high above the hand in most frames as in the others, wherever it is: quantiles, since tracks flicker.
+        rise = np.quantile(height, HIGH) - np.quantile(height, 1.0 - HIGH)
+        slip = np.quantile(between, HIGH) - np.quantile(between, 1.0 - HIGH)
+        if rise > LEAST_RISE and slip < 0.5 * rise:
+            return True
+    return False
 
 
 def force_evidence(observation: Observation) -> FloatArray:

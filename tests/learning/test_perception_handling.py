@@ -192,3 +192,17 @@ def test_what_was_never_seen_in_the_hand_stays_where_it_was_believed_to_be() -> 
     noisy, handled = table_demo(np.random.default_rng(6), "move", 1)
     hidden = replace(noisy, visible=np.zeros_like(noisy.location[..., 0], dtype=bool))
     assert with_held_object(hidden, handled) is hidden
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_closed_fingers_that_feel_no_gap_hold_what_rises_with_them(together: bool) -> None:
+    frames, rise = 20, np.linspace(0.0, 0.12, 20)
+    tool = np.array([0.5, 0.0, 0.05]) + rise[:, None] * (0.0, 0.0, 1.0)
+    track = np.tile([0.5, 0.0, 0.05], (frames, 1, 1))
+    if together:
+        track[:, 0, 2] += rise
+    knife = one_box(
+        tool.tolist(), gripper_closed=np.ones(frames, dtype=bool), gripper_opening=np.zeros(frames), location=track
+    )
+    evidence = holding_evidence(knife)
+    assert np.all(evidence > 0.0) if together else np.all(evidence < 0.0)
