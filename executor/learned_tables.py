@@ -9,7 +9,8 @@ import json
 import math
 from typing import TYPE_CHECKING
 
-from learning.concept_id import ACTION_SPACE, REFERENCE_SPACE, Concept
+from learning.concept_id import ACTION_SPACE, Concept
+from learning.grammar.innate import INNATE, MEASURED
 
 if TYPE_CHECKING:
     from learning import Knowledge
@@ -80,18 +81,17 @@ def function_words(knowledge: "Knowledge") -> list[str]:
 
 
 def concept_rows(knowledge: "Knowledge") -> list[tuple[Concept, str, int, list[tuple[str, float, float]]]]:
-    """All concepts but actions: id, what its mean is, demos it was seen in, and its words."""
+    """All concepts but actions: id, its mean or what it measures, demos it was seen in, and its words.
+
+    Innate kinds of meaning stand in it only where words were learned for them.
+    """
     words = words_of_concepts(knowledge)
     rows = []
     for space, mixture in knowledge.spaces.mixtures.items():
         for number, component in mixture.components.items():
             concept = Concept(space, number)
             rows.append((concept, described(space, component.mean), component.demos, words.get(concept, [])))
-    rows += [
-        (concept, "what was spoken of before", 0, entries)
-        for concept, entries in words.items()
-        if concept.space == REFERENCE_SPACE
-    ]
+    rows += [(concept, MEASURED[concept], 0, words[concept]) for concept in sorted(INNATE) if concept in words]
     return rows
 
 

@@ -93,13 +93,15 @@ class LearnRelease:
 
     Attributes:
         seed: Seed of the noise of perception.
+        method: How language is learned: `readings` or `thesis`.
     """
 
     seed: int
+    method: str = "readings"
 
     def __call__(self, scenes: Sequence[Scene], commands: Sequence[Command]) -> ReleaseStudent:
         """Learn from scenes and commands."""
         rng = np.random.default_rng(self.seed)
-        learner = Learner(seed=self.seed)
+        learner = Learner(seed=self.seed, method=self.method)
         study_release(learner, scenes, commands, rng)
         return ReleaseStudent(learner.knowledge, rng)

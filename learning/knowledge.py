@@ -13,7 +13,9 @@ from learning.errors import KnowledgeError
 from learning.grammar.actions import ActionTable
 from learning.graphs.action_graphlet import ActionGraphlet
 from learning.grounding.language_learner import LanguageLearner
-from learning.knowledge_check import check_language
+from learning.grounding.reading_learner import ReadingLearner
+from learning.grounding.table_language import TableLanguage
+from learning.knowledge_check import check_language, check_table_language
 from learning.percept import Percept
 from learning.saved_numbers import saved_count
 
@@ -24,29 +26,40 @@ LEAST_BEARING = 0.005
 """Share of sightings with something on top below which a shape is taken not to bear anything (noise aside)."""
 
 
+Language = LanguageLearner | ReadingLearner
+METHODS: dict[str, type[LanguageLearner] | type[ReadingLearner]] = {
+    ReadingLearner.method: ReadingLearner,
+    LanguageLearner.method: LanguageLearner,
+}
+"""Ways to learn language by their names."""
+
+
 class Knowledge:
     """What was learned. Saved as one readable JSON file; nothing in it is a demo or a sentence.
 
     Attributes:
         spaces: Visual concepts and action graphlets.
-        language: K, Φ, Π and preferences.
+        language: Words and grammar of the board: by readings, or the thesis's way (K, Φ, Π and preferences).
+        table_language: K, Φ and Π of each language heard at tables.
         demos: Demos seen.
         sentences: Sentences heard.
         seen: Sightings of each shape concept.
         bearing: Sightings of each shape concept with something on top.
     """
 
-    def __init__(self, spaces: SpaceSet | str = BOARD) -> None:
+    def __init__(self, spaces: SpaceSet | str = BOARD, method: str = ReadingLearner.method) -> None:
         """Start knowing nothing.
 
         Args:
             spaces: The feature spaces to learn in, or the name of a known set of them.
+            method: How language is learned: `readings` or `thesis`.
 
         Raises:
-            KnowledgeError: No set has that name.
+            KnowledgeError: No set has that name, or there is no such method.
         """
         self.spaces = ConceptSpaces(spaces)
-        self.language = LanguageLearner()
+        self.language: Language = _language(method)()
+        self.table_language = TableLanguage()
         self.demos = 0
         self.sentences = 0
         self.seen: defaultdict[int, float] = defaultdict(float)
@@ -94,8 +107,10 @@ class Knowledge:
         for space, mixture in self.spaces.mixtures.items():
             for number in range(mixture.numbers_given):
                 kept = mixture.resolve(number)
-                if kept != number and self.language.correlation.concept_counts.get(Concept(space, number)):
+                if kept != number and self.language.speaks_of(Concept(space, number)):
                     self.language.rename(Concept(space, number), Concept(space, kept))
+                if kept != number and self.table_language.speaks_of(Concept(space, number)):
+                    self.table_language.rename(Concept(space, number), Concept(space, kept))
         for counts in (self.seen, self.bearing):
             for number in [n for n in counts if self.spaces.resolve("shape", n) != n]:
                 counts[self.spaces.resolve("shape", number)] += counts.pop(number)
@@ -110,6 +125,7 @@ class Knowledge:
             "concepts": self.spaces.to_json(),
             "bearing": {str(n): [self.bearing[n], self.seen[n]] for n in sorted(self.seen)},
             "language": self.language.to_json(),
+            "table_language": self.table_language.to_json(),
         }
 
     @classmethod
@@ -132,8 +148,14 @@ class Knowledge:
         try:
             knowledge.spaces = ConceptSpaces.from_json(data["concepts"])
             field = "language"
-            knowledge.language = LanguageLearner.from_json(data["language"])
+            # Files from before there was a choice are of the thesis's method.
+            method = str(data["language"].get("method", LanguageLearner.method))
+            knowledge.language = _language(method).from_json(data["language"])
             check_language(knowledge.language, knowledge.spaces)
+            if "table_language" in data:  # older files know none
+                field = "table_language"
+                knowledge.table_language = TableLanguage.from_json(data["table_language"])
+                check_table_language(knowledge.table_language, knowledge.spaces)
             field = "bearing"
             for number, (bearing, seen) in data["bearing"].items():
                 knowledge.bearing[int(number)] = saved_count(bearing, f"bearing of shape_{number}")
@@ -176,6 +198,12 @@ class Knowledge:
         except (ValueError, RecursionError) as error:  # RecursionError: brackets nested without end
             raise KnowledgeError(f"{path}: is not JSON ({error}); give a file that `showtell learn` wrote") from None
         return cls.from_json(data, str(path))
+
+
+def _language(method: str) -> type[LanguageLearner] | type[ReadingLearner]:
+    if method not in METHODS:
+        raise KnowledgeError(f"there is no method '{method}' to learn language; choose one of {', '.join(METHODS)}")
+    return METHODS[method]
 
 
 def _readable(data: Any, depth: int = 0) -> str:

@@ -2,9 +2,14 @@
 
 from collections.abc import Iterable
 
-from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, REFERENCE, REFERENCE_SPACE, RELATION_SPACES, Concept
+from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, REFERENCE_SPACE, RELATION_SPACES, Concept
 from learning.concepts import ConceptSpaces
+from learning.grammar.innate import INNATE
 from learning.grounding.language_learner import LanguageLearner
+from learning.grounding.reading_learner import ReadingLearner
+from learning.grounding.table_language import TableLanguage
+from learning.grounding.table_scene import BESIDE, MIDDLE, NAMED, SIDE_PLACES
+from learning.grounding.word_uses import HEADING_SPACE
 
 ELEMENTS = frozenset(
     (
@@ -15,12 +20,15 @@ ELEMENTS = frozenset(
 """All RCL elements (thesis table 5.1) and feature spaces that a rule of the grammar may name."""
 
 
-def check_language(language: LanguageLearner, spaces: ConceptSpaces) -> None:
+def check_language(language: LanguageLearner | ReadingLearner, spaces: ConceptSpaces) -> None:
     """Check that K, Φ and Π name nothing that was never learned.
 
     Raises:
         ValueError: They do; the message names the concept or the element.
     """
+    if isinstance(language, ReadingLearner):
+        _check_concepts(language.named(), spaces, "Φ")
+        return
     for matrix in (language.correlation, language.focus):
         _check_concepts(matrix.concept_counts, spaces, "K")
         for row in matrix.joint_counts.values():
@@ -33,6 +41,22 @@ def check_language(language: LanguageLearner, spaces: ConceptSpaces) -> None:
         raise ValueError(f"the grammar names an unknown element '{label}'; known are {', '.join(sorted(ELEMENTS))}")
 
 
+def check_table_language(language: TableLanguage, spaces: ConceptSpaces) -> None:
+    """Check that words of tables mean nothing that was never learned.
+
+    Raises:
+        ValueError: They do; the message names the concept.
+    """
+    innate = {*SIDE_PLACES, MIDDLE, BESIDE}
+    for concept in sorted(language.concepts() - innate):
+        if concept.space.startswith(NAMED):
+            sorts = language.sorts.get(concept.space.removeprefix(NAMED))
+            if sorts is None or not 0 <= concept.number < len(sorts.kinds):
+                raise ValueError(f"table language speaks of {concept}, which is no learned sort")
+        else:
+            _check_concepts((concept,), spaces, "table language")
+
+
 def _check_concepts(concepts: Iterable[Concept], spaces: ConceptSpaces, where: str) -> None:
     for concept in concepts:
         if concept.space == ACTION_SPACE:
@@ -40,6 +64,6 @@ def _check_concepts(concepts: Iterable[Concept], spaces: ConceptSpaces, where: s
         elif concept.space in spaces.mixtures:
             known = 0 <= concept.number < spaces.mixtures[concept.space].numbers_given
         else:
-            known = concept == REFERENCE
+            known = concept in INNATE or (concept.space == HEADING_SPACE and concept.number in range(4))
         if not known:
             raise ValueError(f"{where} speaks of {concept}, which is no learned concept")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from executor.commands import evaluate_actions, evaluate_concepts, evaluate_tracking
+from executor.commands import evaluate_actions, evaluate_concepts, evaluate_language, evaluate_tracking
 from executor.commands.output import Json, Output, Seed, ShowtellGroup
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ app = typer.Typer(
 
 evaluate_actions.add_to(app)
 evaluate_concepts.add_to(app)
+evaluate_language.add_to(app)
 evaluate_tracking.add_to(app)
 
 
@@ -27,6 +28,13 @@ class Split(StrEnum):
 
     GROUPS = "groups"
     COMMANDS = "commands"
+
+
+class Method(StrEnum):
+    """How language is learned."""
+
+    READINGS = "readings"
+    THESIS = "thesis"
 
 
 @app.callback()
@@ -42,6 +50,7 @@ def train_robots(
         int | None, typer.Option(min=2, help="Learn and ask in this many folds (4 without --knowledge).")
     ] = None,
     split: Annotated[Split, typer.Option(help="What shares a fold: scenes of a group, or nothing.")] = Split.GROUPS,
+    method: Annotated[Method, typer.Option(help="How language is learned in folds.")] = Method.READINGS,
     jobs: Annotated[int, typer.Option(min=0, help="Processes for folds; 0 takes one a core.")] = 0,
     failures: Annotated[int, typer.Option(min=0, help="How many failures to list.")] = 10,
     seed: Seed = 0,
@@ -74,7 +83,7 @@ def train_robots(
         with out.progress(f"learning and asking {count} folds", count) as advance:
             report = cross_validate(
                 release,
-                LearnRelease(seed),
+                LearnRelease(seed, method.value),
                 folds=count,
                 split=split.value,
                 seed=seed,

@@ -42,6 +42,7 @@ def inspect(
 def tell_knowledge(out: Output, knowledge: "Knowledge", rules: int, everything: bool = False) -> None:
     """Print concepts with their words, actions, grammar and sizes."""
     from executor.learned_tables import action_rows, concept_rows, function_words, part_sizes, rule_rows
+    from executor.table_words import table_words, tell_table_words
 
     concepts = concept_rows(knowledge)
     actions = action_rows(knowledge)
@@ -49,6 +50,7 @@ def tell_knowledge(out: Output, knowledge: "Knowledge", rules: int, everything: 
     sizes = part_sizes(knowledge)
     passed = function_words(knowledge)
     tell_words(out, knowledge, everything)
+    tell_table_words(out, knowledge)
     if grammar:
         shown = [(left, right, f"{probability:.3f}", f"{count:.1f}") for left, right, probability, count in grammar]
         out.table("Grammar Π (most frequent rules)", ("element", "becomes", "probability", "count"), shown)
@@ -72,6 +74,7 @@ def tell_knowledge(out: Output, knowledge: "Knowledge", rules: int, everything: 
                 for concept, states, words in actions
             },
             "passed_over": passed,
+            "languages": table_words(knowledge),
             "rules": [
                 {"left": left, "right": right, "probability": round(p, 4), "count": round(n, 2)}
                 for left, right, p, n in grammar

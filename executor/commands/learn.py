@@ -26,6 +26,7 @@ def learn(
     resume: Annotated[Path | None, typer.Option(help="Knowledge to go on from.")] = None,
     skip_broken: Annotated[bool, typer.Option("--skip-broken", help="Pass over demos that are incomplete.")] = False,
     jobs: Annotated[int, typer.Option(min=0, help="Processes that look at demos of a table; 0 takes one a core.")] = 0,
+    method: Annotated[str, typer.Option(help="How language is learned: `readings` or `thesis`.")] = "readings",
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
@@ -41,7 +42,7 @@ def learn(
     if (demos is None) == (train_robots is None):
         raise InputError("give either a folder of demos or --train-robots with the folder of a release")
     check_place(output)
-    learner = Learner(Knowledge.load(resume) if resume else None, seed=seed)
+    learner = Learner(Knowledge.load(resume) if resume else None, seed=seed, method=method)
     before = learner.knowledge.demos
     if demos is not None:
         lessons = _from_demos(out, learner, demos, skip_broken, seed, jobs)

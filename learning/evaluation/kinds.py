@@ -1,4 +1,4 @@
-"""Kinds of meaning in an annotated command, for a figure per kind, and which of them the vocabulary can express."""
+"""Kinds of meaning in an annotated command, for a figure per kind, and which of them the thesis's vocabulary has."""
 
 from learning.evaluation.public_tree import PublicNode
 
@@ -72,7 +72,7 @@ def _is_modified(entity: PublicNode) -> bool:
 
 
 def outside_vocabulary(tree: PublicNode) -> tuple[str, ...]:
-    """Name the labels and values of a tree that the present vocabulary of meaning cannot express; empty if none."""
+    """Name the labels and values of a tree that the thesis's vocabulary of meaning cannot express; empty if none."""
     outside: set[str] = set()
     for node in tree.nodes():
         if node.label == "entity" and sum(child.label == "color" for child in node.children) > 1:

@@ -16,3 +16,10 @@ class ActionTable:
     starts_held: dict[int, bool]
     ends_held: dict[int, bool]
     composed: dict[tuple[int, int], int]
+
+    def sorts(self) -> tuple[int, ...]:
+        """One action of each sort, known longest; sorts differ in whether the object is held before and after."""
+        first: dict[tuple[bool, bool], int] = {}
+        for number in sorted(self.starts_held):
+            first.setdefault((self.starts_held[number], self.ends_held[number]), number)
+        return tuple(sorted(first.values()))

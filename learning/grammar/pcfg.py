@@ -35,6 +35,12 @@ class Pcfg:
         self.terminals: defaultdict[str, defaultdict[str, float]] = defaultdict(lambda: defaultdict(float))
         self._totals: defaultdict[str, float] = defaultdict(float)
 
+    def clear(self) -> None:
+        """Forget everything."""
+        self.rules.clear()
+        self.terminals.clear()
+        self._totals.clear()
+
     def add_rule(self, left: str, right: tuple[str, ...], amount: float = 1.0) -> None:
         """Count one sighting of left → right (elements)."""
         self.rules[left][right] += amount
@@ -77,10 +83,12 @@ class Pcfg:
             "rules": {
                 left: {" ".join(right): round(n, 3) for right, n in sorted(row.items()) if n >= KEPT}
                 for left, row in sorted(self.rules.items())
+                if any(n >= KEPT for n in row.values())
             },
             "terminals": {
                 left: {ngram: round(n, 3) for ngram, n in sorted(row.items()) if n >= KEPT}
                 for left, row in sorted(self.terminals.items())
+                if any(n >= KEPT for n in row.values())
             },
         }
 

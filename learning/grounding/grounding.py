@@ -23,6 +23,11 @@ class Grounding:
         self.counts: defaultdict[str, defaultdict[Concept | None, float]] = defaultdict(lambda: defaultdict(float))
         self.concept_totals: defaultdict[Concept | None, float] = defaultdict(float)
 
+    def clear(self) -> None:
+        """Forget everything."""
+        self.counts.clear()
+        self.concept_totals.clear()
+
     def add(self, ngram: str, concept: Concept | None, amount: float = 1.0) -> None:
         """Add `amount` to λ(δ, v)."""
         self.counts[ngram][concept] += amount

@@ -56,6 +56,8 @@ class VisionTree:
 class LanguageLearner:
     """K, Φ and Π, updated by one pair of sentence and demo at a time."""
 
+    method = "thesis"
+
     def __init__(self) -> None:
         """Start knowing nothing."""
         self.correlation = CorrelationMatrix()
@@ -149,6 +151,14 @@ class LanguageLearner:
             for left, right in reading.rules():
                 self.grammar.add_rule(left, right, share)
 
+    def speaks_of(self, concept: Concept) -> bool:
+        """Whether anything was learned of a concept."""
+        return self.correlation.concept_counts.get(concept, 0.0) > 0
+
+    def knows(self, word: str) -> bool:
+        """Whether a word was ever heard."""
+        return word in self.correlation.ngram_counts
+
     def rename(self, old: Concept, new: Concept) -> None:
         """Carry over all that was learned of a concept that turned out to be another."""
         self.correlation.rename(old, new)
@@ -159,6 +169,7 @@ class LanguageLearner:
     def to_json(self) -> dict[str, Any]:
         """Plain numbers, lists and strings."""
         return {
+            "method": self.method,
             "correlation": self.correlation.to_json(),
             "focus": self.focus.to_json(),
             "grounding": self.grounding.to_json(),

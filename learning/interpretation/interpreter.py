@@ -1,67 +1,12 @@
-"""From a sentence and a percept to a goal, by the learned Φ, Π and preferences."""
+"""From a sentence and a percept to a goal, by whichever method the knowledge was learned with."""
 
-import math
-from dataclasses import dataclass
-
-from learning.concept_id import Concept
-from learning.grammar.chart import Chart, LexicalEntry, Reading
-from learning.grammar.rcl import RclNode
-from learning.grammar.scene import SceneSets, bits
-from learning.graphs import ActionGraphlet
-from learning.grounding.lexicon import lexical_entries
+from learning.grounding.language_learner import LanguageLearner
 from learning.grounding.ngrams import words_of
+from learning.interpretation.interpretation import Interpretation, refusal
+from learning.interpretation.reading_interpreter import ReadingInterpreter
+from learning.interpretation.thesis_interpreter import ThesisInterpreter
 from learning.knowledge import Knowledge
 from learning.percept import Percept
-from robots.pose import FloatArray
-
-MEANINGFUL = 0.6
-"""A word grounded in at least this share of its validations is not passed over without saying so."""
-ESTABLISHED = 3.0
-"""Validations after which that share is trusted."""
-
-
-@dataclass(frozen=True, slots=True)
-class Goal:
-    """Which object ends where.
-
-    Attributes:
-        object_id: Track number of the object.
-        position: Where its centre ends, (3,) [m], or None when it stays in the gripper.
-        action: How that is done.
-    """
-
-    object_id: int
-    position: FloatArray | None
-    action: ActionGraphlet
-
-
-@dataclass(frozen=True, slots=True)
-class Interpretation:
-    """How a sentence was understood in a scene.
-
-    Attributes:
-        words: The sentence's words; a node's `first` and `last` count them from 1.
-        understood: Whether there is a goal.
-        goals: What to do, in order; the most likely choice where the sentence leaves several.
-        tree: The RCL tree Ψ, None when nothing was understood.
-        explanation: What was understood, or why nothing was, in a sentence.
-        unknown: Words that were never heard.
-        unheeded: Words with a learned meaning that the reading had to pass over: nothing in the scene is that.
-        object_candidates: Track numbers of all objects that the sentence may be about.
-        place_candidates: All positions [m] that it may end at.
-        confidence: Share of this reading among all readings, 0..1.
-    """
-
-    words: tuple[str, ...]
-    understood: bool
-    goals: tuple[Goal, ...]
-    tree: RclNode | None
-    explanation: str
-    unknown: tuple[str, ...] = ()
-    unheeded: tuple[str, ...] = ()
-    object_candidates: tuple[int, ...] = ()
-    place_candidates: tuple[FloatArray, ...] = ()
-    confidence: float = 0.0
 
 
 class Interpreter:
@@ -78,97 +23,8 @@ class Interpreter:
         """
         words = words_of(sentence)
         if not words:
-            return _refusal(words, "the sentence is empty")
+            return refusal(words, "the sentence is empty")
         language = self.knowledge.language
-        unknown = tuple(dict.fromkeys(w for w in words if w not in language.correlation.ngram_counts))
-        entries, skip = lexical_entries(words, language.grounding, language.preferences)
-        if not any(entry.concept.space == "action" for entry in entries):
-            said = f"never heard: {', '.join(unknown)}" if unknown else "the words are known, but not as an action"
-            return _refusal(words, f"no word of the sentence is known to name an action ({said})", unknown)
-        scene = SceneSets(percept, self.knowledge.bearing_shapes())
-        chart = Chart(
-            len(words), entries, skip, language.grammar, scene, self.knowledge.action_table(), language.preferences
-        )
-        readings = chart.readings()
-        if not readings:
-            return _refusal(words, self._why_nothing(words, entries, scene), unknown)
-        weights = [language.log_weight(reading) for reading in readings]
-        best = max(range(len(readings)), key=weights.__getitem__)
-        share = 1.0 / sum(math.exp(min(weight - weights[best], 0.0)) for weight in weights)
-        return self._interpretation(words, unknown, readings[best], share, percept)
-
-    def _interpretation(
-        self, words: tuple[str, ...], unknown: tuple[str, ...], reading: Reading, share: float, percept: Percept
-    ) -> Interpretation:
-        moved, places = bits(reading.moved), bits(reading.places)
-        action = self.knowledge.spaces.actions[reading.action]
-        position = percept.placements[places[0]] if places else None
-        goal = Goal(int(percept.object_ids[moved[0]]), position, action)
-        unheeded = self._unheeded(words, reading)
-        explanation = f"understood as action_{reading.action}: object {goal.object_id}"
-        explanation += " is kept in the gripper" if position is None else f" to {_metres(position)}"
-        if len(moved) > 1:
-            explanation += f"; {len(moved)} objects fit the words"
-        if len(places) > 1:
-            explanation += f"; {len(places)} places fit the words"
-        if unheeded:
-            explanation += f"; nothing here fits {_listed(unheeded)}"
-        if unknown:
-            explanation += f"; never heard {_listed(unknown)}"
-        return Interpretation(
-            words=words,
-            understood=True,
-            goals=(goal,),
-            tree=reading.item.tree(),
-            explanation=explanation,
-            unknown=unknown,
-            unheeded=unheeded,
-            object_candidates=tuple(int(percept.object_ids[i]) for i in moved),
-            place_candidates=tuple(percept.placements[m] for m in places),
-            confidence=share,
-        )
-
-    def _unheeded(self, words: tuple[str, ...], reading: Reading) -> tuple[str, ...]:
-        """Words with an established meaning that the reading passes over."""
-        covered = reading.item.covered()
-        grounding = self.knowledge.language.grounding
-        found = []
-        for position, word in enumerate(words):
-            total = grounding.total(word)
-            if position in covered or total < ESTABLISHED:
-                continue
-            about = sum(
-                amount
-                for concept, amount in grounding.counts[word].items()
-                if concept is not None and concept.space in ("colour", "shape", "location")
-            )
-            if about / total >= MEANINGFUL:
-                found.append(word)
-        return tuple(dict.fromkeys(found))
-
-    def _why_nothing(self, words: tuple[str, ...], entries: list[LexicalEntry], scene: SceneSets) -> str:
-        """Name the words whose meanings nothing in the scene has."""
-        meanings: dict[tuple[int, int], list[Concept]] = {}
-        for entry in entries:
-            if entry.concept.space in ("colour", "shape"):
-                meanings.setdefault((entry.first, entry.after), []).append(entry.concept)
-        missing = [
-            " ".join(words[first:after])
-            for (first, after), concepts in sorted(meanings.items())
-            if not any(scene.objects.get(concept) for concept in concepts)
-        ]
-        if missing:
-            return f"nothing in the scene fits {_listed(tuple(dict.fromkeys(missing)))}"
-        return "the words do not add up to something that can be done in this scene"
-
-
-def _refusal(words: tuple[str, ...], why: str, unknown: tuple[str, ...] = ()) -> Interpretation:
-    return Interpretation(words, False, (), None, why, unknown=unknown)
-
-
-def _listed(words: tuple[str, ...]) -> str:
-    return ", ".join(f"“{word}”" for word in words)
-
-
-def _metres(position: FloatArray) -> str:
-    return "(" + ", ".join(f"{value:.3f}" for value in position) + ") m"
+        if isinstance(language, LanguageLearner):
+            return ThesisInterpreter(self.knowledge, language).interpret(words, percept)
+        return ReadingInterpreter(self.knowledge, language).interpret(words, percept)

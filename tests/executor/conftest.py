@@ -36,7 +36,7 @@ def actions() -> dict[str, ActionGraphlet]:
 @pytest.fixture(scope="session")
 def knowledge() -> Knowledge:
     """Someone who knows `take`, `drop`, `put`, the colours, cube, prism, block and on."""
-    known = Knowledge()
+    known = Knowledge(method="thesis")
     directions = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
     means = {
         "colour": [FEATURE_SPACES["colour"].embed(np.array(hsl(rgb))) for rgb in board.COLOURS_RGB.values()],

@@ -23,7 +23,7 @@ SCENES = 24
 @pytest.fixture(scope="module")
 def saved(synthetic_release_directory: Path) -> dict[str, Any]:
     release = Release.load(synthetic_release_directory)
-    learner = Learner(seed=1)
+    learner = Learner(seed=1, method="thesis")
     for scene in release.one_block_scenes()[:SCENES]:
         sentences = [command.sentence for command in release.commands_of(scene.number)]
         learner.study(key_frames(scene, np.random.default_rng([3, scene.number])), sentences)

@@ -9,6 +9,8 @@ import pytest
 from learning import Interpreter, Knowledge, Learner
 from learning.concept_id import Concept
 from learning.errors import KnowledgeError
+from learning.grounding.language_learner import LanguageLearner
+from learning.grounding.reading_learner import ReadingLearner
 from learning.learner import Lesson
 from learning.perception import percept_of
 from learning.train_robots import Release, key_frames, observe_before
@@ -83,8 +85,7 @@ def test_what_nothing_ever_rested_on_bears_nothing() -> None:
 
 
 def test_merged_concepts_are_renamed_in_language() -> None:
-    knowledge = Knowledge()
-    language = knowledge.language
+    language = LanguageLearner()
     old, new = Concept("colour", 5), Concept("colour", 2)
     language.correlation.observe(["red"], [old])
     language.grounding.add("red", old, 3.0)
@@ -93,6 +94,18 @@ def test_merged_concepts_are_renamed_in_language() -> None:
     assert language.grounding.probability("red", new) == pytest.approx(1.0)
     assert language.correlation.joint_counts["red"] == {new: 1.0}
     assert language.preferences.of("red = colour_2") == 1.5
+
+
+def test_merged_concepts_are_renamed_in_readings() -> None:
+    language = ReadingLearner()
+    old, new = Concept("colour", 5), Concept("colour", 2)
+    language.alignment.observe(["red"], [old])
+    language.grounding.add("red", old, 3.0)
+    language.weights.learned["means", "red", "colour_5"] = 1.5
+    language.rename(old, new)
+    assert language.grounding.probability("red", new) == pytest.approx(1.0)
+    assert old not in language.alignment.totals
+    assert language.weights.of(("means", "red", "colour_2")) == 1.5
 
 
 @pytest.mark.parametrize(

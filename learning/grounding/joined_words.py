@@ -1,0 +1,135 @@
+"""Parts of words that are words of their own, found by statistics (thesis 7.2 leaves this open).
+
+Where a language joins a conjunction, a pronoun or a gender ending to a word, the joined word is rarer than its parts
+and means what they mean. A beginning or an ending is such a part when it was met with several words that also stand
+alone. Nothing of any language is built in.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from typing import Any
+
+from learning.saved_numbers import saved_count
+
+LONGEST_AFFIX = 2
+"""Letters of a joined part at most."""
+SHORTEST_STEM = 2
+"""Letters of the word that it is joined to, at least."""
+LEAST_STEMS = 3
+"""A part must have been met with so many words that also stand alone."""
+ESTABLISHED = 4
+"""How often a word must have been heard to count as one that stands alone, or to be what another is a slip for."""
+SLIP = 2
+"""A word heard more often than this is no slip."""
+LONG_ENOUGH = 4
+"""Letters of a word that may have slips."""
+
+
+class JoinedWords:
+    """Counts of words, and what follows from them: which words are others with something joined on, or misspelt."""
+
+    def __init__(self) -> None:
+        """Start without words."""
+        self.counts: defaultdict[str, float] = defaultdict(float)
+        self._dirty = True
+        self._beginnings: frozenset[str] = frozenset()
+        self._endings: frozenset[str] = frozenset()
+        self._pieces = lru_cache(maxsize=4096)(self._analyse)
+
+    def hear(self, words: tuple[str, ...]) -> None:
+        """Count the words of a sentence."""
+        for word in words:
+            self.counts[word] += 1
+        self._dirty = True
+
+    def pieces(self, word: str) -> tuple[str, ...]:
+        """The parts that a word consists of, itself where it is simple; a slip is put right."""
+        self._refresh()
+        return self._pieces(word)
+
+    def split(self, words: tuple[str, ...]) -> tuple[tuple[str, ...], tuple[int, ...]]:
+        """All parts of a sentence's words, and the index of the word that each belongs to."""
+        parts = [(piece, index) for index, word in enumerate(words) for piece in self.pieces(word)]
+        return tuple(piece for piece, _ in parts), tuple(index for _, index in parts)
+
+    def to_json(self) -> dict[str, int]:
+        """Word to count."""
+        return {word: int(count) for word, count in sorted(self.counts.items())}
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> "JoinedWords":
+        """Rebuild; raises ValueError, TypeError or AttributeError for what `to_json` did not write."""
+        joined = cls()
+        for word, count in data.items():
+            joined.counts[word] = saved_count(count, f"count of '{word}'", least=1)
+        return joined
+
+    def _refresh(self) -> None:
+        if not self._dirty:
+            return
+        self._dirty = False
+        self._endings = frozenset(_usual((word[-n:], word[:-n]) for word, n in self._cuts() if self._alone(word[:-n])))
+        self._beginnings = frozenset(
+            _usual((word[:n], stem) for word, n in self._cuts() if (stem := self._stem_of(word[n:])))
+        )
+        self._pieces.cache_clear()
+
+    def _cuts(self) -> Iterator[tuple[str, int]]:
+        """Each word with each length of a part at its end or beginning."""
+        for word in self.counts:
+            for length in range(1, LONGEST_AFFIX + 1):
+                yield word, length
+
+    def _alone(self, word: str) -> bool:
+        return len(word) >= SHORTEST_STEM and self.counts.get(word, 0.0) >= ESTABLISHED
+
+    def _stem_of(self, word: str) -> str:
+        """The word that stands alone, of a word that may have an ending; empty where there is none."""
+        if self._alone(word):
+            return word
+        stems = (word[: -len(end)] for end in sorted(self._endings) if word.endswith(end))
+        return next((stem for stem in stems if self._alone(stem)), "")
+
+    def _analyse(self, word: str) -> tuple[str, ...]:
+        options = [(count, -len(parts), parts) for parts in self._readings(word) if (count := self._support(parts))]
+        if options:
+            return max(options)[2]
+        if self.counts.get(word, 0.0) <= SLIP and len(word) >= LONG_ENOUGH:
+            right = [(self.counts[other], other) for other in _slips(word) if self._alone(other)]
+            if right:
+                return self._analyse(max(right)[1])
+        return (word,)
+
+    def _readings(self, word: str) -> Iterator[tuple[str, ...]]:
+        """Ways to take a word apart into beginning, stem and ending, at least one of them joined on."""
+        for begin in ("", *sorted(self._beginnings)):
+            if not word.startswith(begin):
+                continue
+            rest = word[len(begin) :]
+            for end in ("", *sorted(self._endings)):
+                if rest.endswith(end) and (begin or end):
+                    stem = rest[: len(rest) - len(end)]
+                    yield tuple(part for part in (begin, stem, end) if part)
+
+    def _support(self, parts: tuple[str, ...]) -> float:
+        """How often the stem stands alone; 0 where it does not, or is the rarer of the two."""
+        word = "".join(parts)
+        stems = [part for part in parts if self._alone(part)]
+        count = max((self.counts[stem] for stem in stems), default=0.0)
+        return count if count > self.counts.get(word, 0.0) else 0.0
+
+
+def _usual(parts: Iterable[tuple[str, str]]) -> set[str]:
+    """Parts that were met with enough different stems."""
+    stems: defaultdict[str, set[str]] = defaultdict(set)
+    for part, stem in parts:
+        stems[part].add(stem)
+    return {part for part, met in stems.items() if len(met) >= LEAST_STEMS}
+
+
+def _slips(word: str) -> Iterator[str]:
+    """Words of which a word may be a slip: two neighbouring letters changed places."""
+    for at in range(len(word) - 1):
+        if word[at] != word[at + 1]:
+            yield word[:at] + word[at + 1] + word[at] + word[at + 2 :]

@@ -1,0 +1,66 @@
+"""A bounded memory of recent sentences with what was shown, for looking at them again (design section 5)."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from learning.concept_id import Concept
+from learning.grammar.arrangement import Arrangement
+from learning.grounding.alignment import Shares
+from learning.percept import ShownAction
+
+LARGEST = 1024
+"""Most pairs kept. The oldest are forgotten first; none is saved with the knowledge."""
+
+
+@dataclass(slots=True)
+class Episode:
+    """One sentence with what was shown.
+
+    Attributes:
+        words: The sentence.
+        arrangement: The scene before the action.
+        shown: The action.
+        salient: What was salient in it.
+        shares: What the sentence added to the alignment when it was looked at last.
+        grounded: What it added to Φ when it was read last: word, meaning, amount.
+    """
+
+    words: tuple[str, ...]
+    arrangement: Arrangement
+    shown: ShownAction
+    salient: tuple[Concept, ...]
+    shares: Shares
+    grounded: tuple[tuple[str, Concept | None, float], ...] = ()
+
+
+class Memory:
+    """The last `LARGEST` episodes."""
+
+    def __init__(self) -> None:
+        """Start empty."""
+        self.episodes: list[Episode] = []
+        self._next = 0
+
+    def keep(self, episode: Episode) -> None:
+        """Keep an episode, in the place of the oldest when the memory is full."""
+        if len(self.episodes) < LARGEST:
+            self.episodes.append(episode)
+        else:
+            self.episodes[self._next] = episode
+            self._next = (self._next + 1) % LARGEST
+
+    def recall(self, count: int, rng: np.random.Generator) -> list[Episode]:
+        """Choose some episodes at random."""
+        if not self.episodes:
+            return []
+        return [self.episodes[int(index)] for index in rng.integers(len(self.episodes), size=count)]
+
+    def rename(self, old: Concept, new: Concept) -> None:
+        """Rename a concept that was merged into another, in all that is kept."""
+        for episode in self.episodes:
+            episode.arrangement = episode.arrangement.renamed(old, new)
+            episode.salient = tuple(new if concept == old else concept for concept in episode.salient)
+            episode.grounded = tuple((word, new if c == old else c, n) for word, c, n in episode.grounded)
+            if old.space == "action" and episode.shown.action == old.number:
+                episode.shown = replace(episode.shown, action=new.number)

@@ -1,0 +1,442 @@
+"""What is known of one language: K, Φ and Π, learned from sentences about what was shown at a table.
+
+A demo's sentences are first counted in K (eq. 4.1); an integer program and case analysis pick hypotheses (4.2 to 4.6);
+then all readings of each sentence that do in the scene what was shown are weighed by words (P(δ | v), eq. 5.2) and
+rules, and words and rules are counted by how much they are expected: online EM (thesis 7.2.2) in its incremental form
+(Neal and Hinton 1998). A bounded number of recent sentences is read again later, when more is known, and what they
+counted before is taken back; all older counts stay. Words that no reading needs gather weight as meaning nothing, so
+function words come out without a meaning (habituation, 4.9.4).
+"""
+
+import math
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from learning.concept_id import ACTION_SPACE, REFERENCE, Concept
+from learning.grammar.pcfg import Pcfg
+from learning.grammar.rcl import RclNode
+from learning.grammar.table_chart import Expected, TableChart, WordUse
+from learning.grounding.case_analysis import filter_hypotheses
+from learning.grounding.correlation import CorrelationMatrix
+from learning.grounding.grounding import Grounding
+from learning.grounding.integer_program import Pair, select_groundings
+from learning.grounding.joined_words import JoinedWords
+from learning.grounding.ngrams import ngrams_of, parts_of
+from learning.grounding.table_scene import BESIDE, TableRecord, TableScene
+
+MEMORY = 1200
+"""Sentences that are kept with their scenes to be read again."""
+AGAIN = 15
+"""Of those, so many are read again after each demo."""
+LEAST_STRENGTH = 0.08
+"""Pairs with a weaker correlation are no hypotheses."""
+COMPARABLE = 0.85
+"""A part of an n-gram with this share of its strength or more is a hypothesis too."""
+PRIOR = 2.0
+"""How many readings a hypothesis of strength 1 is worth before any came."""
+NEW_WORD = 0.02
+"""Probability of any one n-gram that a concept was never called,"""
+LONGER = 0.1
+"""and this times less for every further word."""
+NEW_RULE = 0.3
+"""What every rule counts that was never used."""
+POSSIBLE = 12
+"""Rules of an element that are possible, used or not."""
+PASSED = math.log(0.4)
+"""Log probability that one more word is passed over before the next that means something."""
+LEAST_USE = 0.3
+"""Readings that a meaning needs to be tried where it is no hypothesis."""
+LEAST_LIFT = 1.5
+"""A meaning must go with its n-gram so much more often than with any that are about the same feature space,"""
+FEW_TIMES = 4
+"""once that was heard so many times."""
+LEAST_TRUE = 0.25
+"""and what it means must be there so often when something of that feature space is,"""
+ACTION_LIFT = 2.0
+"""For actions so much more often, as moving goes with words about places;"""
+FIRST_SENTENCES = 30
+"""Sentences before it is known what is usual."""
+MEASURED = 0.3
+"""An n-gram that goes with a concept so strongly has no meaning of another kind."""
+LEAST_RULE = 0.02
+"""No rule is less likely: what was learned first must not shut out what comes later."""
+OF_ACTIONS = 0.5
+"""except that an n-gram that mostly says an action may say any that goes with it"""
+LEAST_ACTION = 0.1
+"""so often."""
+COHESION = 0.7
+"""Words mean something together where each of them comes with the others so often."""
+ANY = "any "
+"""Before the name of a feature space: the pseudo-concept in K that anything of that space is salient."""
+UNMEASURED = frozenset((REFERENCE, BESIDE))
+"""Kinds of meaning that are always at hand, so that K says nothing of them; only readings do."""
+RELATING = 0.01
+"""Probability of any one word to have such a meaning, until it had."""
+LONGEST_SENTENCE = 60
+"""Longer sentences are not read."""
+LEAST_MEANING = 0.12
+"""A meaning that an n-gram has less often is none,"""
+LEAST_SPACE = 0.2
+"""nor one in a feature space that it is read in less often,"""
+LEAST_HEARD = 1.5
+"""nor one that was read less often."""
+
+
+@dataclass(slots=True, eq=False)
+class Heard:
+    """A sentence that is kept for a while.
+
+    Attributes:
+        words: Its words.
+        record: What was shown.
+        scene: The same in symbols.
+        counted: What it counted when it was read last.
+    """
+
+    words: tuple[str, ...]
+    record: TableRecord
+    scene: TableScene
+    counted: Expected | None = None
+
+
+class Tongue:
+    """K, Φ and Π of one language."""
+
+    def __init__(self) -> None:
+        """Start without a word."""
+        self.joined = JoinedWords()
+        self.correlation = CorrelationMatrix()
+        self.grounding = Grounding()
+        self.grammar = Pcfg()
+        self._memory: deque[Heard] = deque()
+        self._hypotheses: dict[str, dict[Concept, float]] = {}
+        self._weights: dict[tuple[str, tuple[str, ...]], float] = {}
+
+    def learn(self, sentences: Iterable[tuple[str, ...]], record: TableRecord, scene: TableScene) -> int:
+        """Learn from all sentences about one demo; returns how many could be read so that they do what was shown."""
+        heard = [Heard(words, record, scene) for words in sentences if 0 < len(words) <= LONGEST_SENTENCE]
+        for each in heard:
+            self.joined.hear(each.words)
+        salient = scene.salient() - UNMEASURED
+        for each in heard:
+            self.correlation.observe(ngrams_of(self.joined.split(each.words)[0]), _with_spaces(salient))
+        self._suppose({ngram for each in heard for ngram in ngrams_of(self.joined.split(each.words)[0])}, salient)
+        read = sum(self._read(each) for each in heard)
+        self._memory.extend(heard)
+        while len(self._memory) > MEMORY:
+            self._memory.popleft()
+        for _ in range(min(AGAIN, len(self._memory) - len(heard))):
+            self._read(self._memory[0])
+            self._memory.rotate(-1)
+        return read
+
+    def settle(self) -> None:
+        """Read all that is kept in memory again."""
+        for each in self._memory:
+            self._read(each)
+
+    def refresh(self, scene_of: Callable[[TableRecord], TableScene]) -> None:
+        """Put all that is kept in memory into symbols again, as concepts have changed, and count it anew in K."""
+        scenes: dict[int, TableScene] = {}
+        changed: dict[int, set[str]] = {}
+        for each in self._memory:
+            if id(each.record) not in scenes:
+                scenes[id(each.record)] = scene_of(each.record)
+            before, each.scene = each.scene, scenes[id(each.record)]
+            old, new = before.salient() - UNMEASURED, each.scene.salient() - UNMEASURED
+            if old != new:
+                ngrams = set(ngrams_of(self.joined.split(each.words)[0]))
+                _recount(self.correlation, ngrams, _with_spaces(old), _with_spaces(new))
+                changed.setdefault(id(each.record), set()).update(ngrams)
+        for record, ngrams in changed.items():
+            self._suppose(ngrams, scenes[record].salient() - UNMEASURED)
+
+    def parse(self, words: tuple[str, ...], scene: TableScene | None = None) -> RclNode | None:
+        """The most likely tree of a sentence over its words counted from 1; None where it cannot be read.
+
+        Args:
+            words: The sentence.
+            scene: What was shown, if the tree must do that there.
+        """
+        if not 0 < len(words) <= LONGEST_SENTENCE:
+            return None
+        pieces, origin = self.joined.split(words)
+        tree = self._chart(pieces, scene).best()
+        return None if tree is None else _over_words(tree, origin)
+
+    def name_of_thing(self, words: tuple[str, ...], space: str) -> str | None:
+        """The n-gram by which a sentence tells what the thing that it is about is like, in one space of looks."""
+        if not 0 < len(words) <= LONGEST_SENTENCE:
+            return None
+        pieces, _ = self.joined.split(words)
+        tree = self._chart(pieces, None).best()
+        if tree is None:
+            return None
+        event = tree.children[0] if tree.label == "sequence" else tree
+        thing = next((child for child in event.children if child.label == "entity"), None)
+        leaf = next((each for each in thing.children if each.label == space), None) if thing is not None else None
+        return None if leaf is None else " ".join(pieces[leaf.first - 1 : leaf.last])
+
+    def meanings(self, ngram: str) -> dict[Concept, float]:
+        """What an n-gram means: concepts with Φ, the share of its readings; empty for a function word."""
+        pieces, _ = self.joined.split(tuple(ngram.split(" ")))
+        found: dict[Concept, float] = {}
+        for known in {" ".join(pieces), *pieces} if " " not in ngram else {" ".join(pieces)}:
+            row = self._readings(known)
+            total = sum(row.values())
+            if not self._coheres(known):
+                continue
+            for concept, count in row.items():
+                if concept is None or count < LEAST_HEARD or count < LEAST_MEANING * total:
+                    continue
+                if self._share_of_space(known, concept.space) >= LEAST_SPACE and self._borne_out(known, concept):
+                    found[concept] = max(found.get(concept, 0.0), count / total)
+        return found
+
+    def rename(self, old: Concept, new: Concept) -> None:
+        """Carry over all that was learned of a concept that turned out to be another."""
+        self.correlation.rename(old, new)
+        self.grounding.rename(old, new)
+        for each in self._memory:
+            if each.counted is not None:
+                uses: dict[tuple[str, Concept], float] = {}
+                for (ngram, concept), share in each.counted.uses.items():
+                    pair = ngram, new if concept == old else concept
+                    uses[pair] = uses.get(pair, 0.0) + share
+                each.counted = Expected(uses, each.counted.passed, each.counted.rules)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain numbers, lists and strings; sentences in memory are not kept, nor what in K is no more than chance."""
+        correlation = self.correlation.to_json()
+        kept: dict[str, list[Any]] = {}
+        for ngram, (*entry, row) in sorted(correlation["ngrams"].items(), key=lambda one: one[0].count(" ")):
+            if all(part in kept for part in parts_of(ngram)) and self._coheres(ngram):
+                pairs = {text: n for text, n in row.items() if self._kept(ngram, Concept.parse(text))}
+                kept[ngram] = [*entry, pairs]
+        correlation["ngrams"] = dict(sorted(kept.items()))
+        return {
+            "words": self.joined.to_json(),
+            "correlation": correlation,
+            "grounding": self.grounding.to_json(),
+            "grammar": self.grammar.to_json(),
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> "Tongue":
+        """Rebuild; raises KeyError, TypeError, ValueError or AttributeError for what `to_json` did not write."""
+        tongue = cls()
+        tongue.joined = JoinedWords.from_json(data["words"])
+        tongue.correlation = CorrelationMatrix.from_json(data["correlation"])
+        tongue.grounding = Grounding.from_json(data["grounding"])
+        tongue.grammar = Pcfg.from_json(data["grammar"])
+        return tongue
+
+    def _kept(self, ngram: str, concept: Concept) -> bool:
+        """Whether a count of K is saved: that of a feature space, or of a pair that goes together beyond chance."""
+        if concept.space.startswith(ANY):
+            return self.correlation.joint_counts[ngram][concept] > 0.0
+        return self.correlation.strength_beyond_chance(ngram, concept) >= LEAST_STRENGTH
+
+    def _suppose(self, ngrams: set[str], salient: frozenset[Concept]) -> None:
+        """Select (4.2) and filter (4.3 to 4.6) hypotheses for the n-grams of a demo and its salient concepts."""
+        strengths: dict[Pair, float] = {}
+        for ngram in sorted(ngrams):
+            for concept in sorted(salient):
+                strength = self.correlation.strength_beyond_chance(ngram, concept)
+                strengths[ngram, concept] = strength if strength >= LEAST_STRENGTH else 0.0
+                self._hypotheses.get(ngram, {}).pop(concept, None)
+        chosen = select_groundings(strengths)
+        chosen |= {
+            (part, concept)
+            for ngram, concept in chosen
+            for part in parts_of(ngram)
+            if strengths.get((part, concept), 0.0) >= COMPARABLE * strengths[ngram, concept]
+        }
+        for ngram, concept in filter_hypotheses(chosen):
+            self._hypotheses.setdefault(ngram, {})[concept] = strengths[ngram, concept]
+
+    def _read(self, heard: Heard) -> bool:
+        """Read a sentence with what is known now, and count that in the place of what it counted before."""
+        if heard.counted is not None:
+            self._count(heard.counted, -1.0)
+        pieces, _ = self.joined.split(heard.words)
+        heard.counted = self._chart(pieces, heard.scene).expected()
+        if heard.counted is None:
+            return False
+        self._count(heard.counted, 1.0)
+        return True
+
+    def _count(self, expected: Expected, sign: float) -> None:
+        for (ngram, concept), share in expected.uses.items():
+            self.grounding.add(ngram, concept, sign * share)
+            self.grammar.add_terminal(concept.space, ngram, sign * share)
+        for piece, share in expected.passed.items():
+            self.grounding.add(piece, None, sign * share)
+        for (left, right), share in expected.rules.items():
+            self.grammar.add_rule(left, right, sign * share)
+
+    def _chart(self, pieces: tuple[str, ...], scene: TableScene | None) -> TableChart:
+        self._weights.clear()
+        uses = self._uses(pieces, scene)
+        return TableChart(pieces, uses, self._skip(pieces), self._rule_weight, scene)
+
+    def _uses(self, pieces: tuple[str, ...], scene: TableScene | None) -> list[WordUse]:
+        """Ways to read the n-grams of a sentence: hypotheses, and what they were read as before."""
+        uses = []
+        possible = None if scene is None else _possible(scene)
+        for ngram, spans in ngrams_of(pieces).items():
+            if not self._coheres(ngram):
+                continue
+            known = self._readings(ngram)
+            lent = self._hypotheses.get(ngram, {}) if scene is not None else {}
+            concepts = {concept for concept, count in known.items() if concept is not None and count >= LEAST_USE}
+            concepts |= set(lent)
+            if scene is not None and " " not in ngram:
+                # A new word may say what was done, or what the thing is like, where grammar expects that (7.3.3).
+                concepts.add(Concept(ACTION_SPACE, scene.action))
+                if not any(concept in looks for looks in scene.looks for concept in lent):
+                    concepts |= scene.looks[scene.moved]
+            concepts = {concept for concept in concepts if self._borne_out(ngram, concept)}
+            if " " not in ngram:
+                concepts |= UNMEASURED
+            if possible is not None:
+                weights = {
+                    concept: self._word_weight(ngram, concept, lent.get(concept, 0.0))
+                    for concept in concepts & possible
+                }
+            else:
+                weights = self._space_weights(ngram, concepts)
+            uses += [
+                WordUse(first, after, concept, ngram, weight)
+                for concept, weight in sorted(weights.items())
+                for first, after in spans
+            ]
+        return uses
+
+    def _borne_out(self, ngram: str, concept: Concept) -> bool:
+        """Whether K, once it has seen enough, has the n-gram go with the concept at all."""
+        matrix = self.correlation
+        if concept in UNMEASURED:
+            return max(self._hypotheses.get(ngram, {}).values(), default=0.0) < MEASURED
+        heard, every = matrix.ngram_counts.get(ngram, 0.0), Concept(f"{ANY}{concept.space}", 0)
+        usual = matrix.concept_counts.get(concept, 0.0) / max(matrix.concept_counts.get(every, 0.0), 1.0)
+        if matrix.demos > FIRST_SENTENCES and usual > 1.0 / LEAST_LIFT:
+            return False  # what is true of nearly everything tells nothing
+        if heard < FEW_TIMES:
+            return True
+        row = matrix.joint_counts[ngram]
+        share = row.get(concept, 0.0) / max(row.get(every, 0.0), 1.0)
+        if concept.space == ACTION_SPACE and self._share_of_space(ngram, ACTION_SPACE) < OF_ACTIONS:
+            return share >= ACTION_LIFT * usual
+        if concept.space == ACTION_SPACE:
+            return share >= LEAST_ACTION
+        return share >= max(LEAST_TRUE, LEAST_LIFT * usual)
+
+    def _readings(self, ngram: str) -> Mapping[Concept | None, float]:
+        """How often an n-gram was read as what, without making an entry of one never heard."""
+        row = self.grounding.counts.get(ngram)
+        return {} if row is None else row
+
+    def _share_of_space(self, ngram: str, space: str) -> float:
+        """Share of an n-gram's readings that are of one feature space."""
+        row = self._readings(ngram)
+        total = sum(row.values())
+        same = sum(count for concept, count in row.items() if concept is not None and concept.space == space)
+        return same / total if total >= LEAST_HEARD else 0.0
+
+    def _coheres(self, ngram: str) -> bool:
+        """Whether the words of an n-gram belong together: its parts seldom come without the rest."""
+        words = ngram.split(" ")
+        counts = self.correlation.ngram_counts
+        whole = counts.get(ngram, 0.0)
+        if len(words) == 1:
+            return True
+        if whole < FEW_TIMES or not (self._coheres(" ".join(words[1:])) and self._coheres(" ".join(words[:-1]))):
+            return False
+        parts = counts.get(" ".join(words[1:]), whole), counts.get(" ".join(words[:-1]), whole)
+        return whole >= COHESION * max(parts)
+
+    def _word_weight(self, ngram: str, concept: Concept, strength: float) -> float:
+        """Log P(δ | v): counts, the hypothesis, and a little for any n-gram."""
+        said = max(0.0, self.grounding.counts[ngram][concept]) if ngram in self.grounding.counts else 0.0
+        total = max(0.0, self.grounding.concept_totals.get(concept, 0.0))
+        new = RELATING if concept in UNMEASURED else NEW_WORD
+        rare = LONGER ** ngram.count(" ")
+        return math.log((said + (PRIOR * strength + new) * rare) / (total + PRIOR + 1.0))
+
+    def _space_weights(self, ngram: str, concepts: set[Concept]) -> dict[Concept, float]:
+        """Without a scene: for each space the concept that the n-gram means most, with log P(δ | space)."""
+        best: dict[str, tuple[float, Concept]] = {}
+        said: dict[str, float] = {}
+        for concept in sorted(concepts):
+            count = max(0.0, self.grounding.counts[ngram][concept]) if ngram in self.grounding.counts else 0.0
+            said[concept.space] = said.get(concept.space, 0.0) + count
+            best[concept.space] = max(best.get(concept.space, (-1.0, concept)), (count, concept))
+        new = NEW_WORD * LONGER ** ngram.count(" ") * 0.1
+        return {
+            concept: math.log((said[space] + new) / (max(0.0, self.grammar.total(space)) + 1.0))
+            for space, (_, concept) in best.items()
+        }
+
+    def _skip(self, pieces: tuple[str, ...]) -> list[float]:
+        """Log probability of each piece as one that is passed over."""
+        total = max(0.0, self.grounding.concept_totals.get(None, 0.0))
+        heard = sum(self.joined.counts.values())
+        weights = []
+        for piece in pieces:
+            passed = max(0.0, self.grounding.counts[piece][None]) if piece in self.grounding.counts else 0.0
+            usual = (self.joined.counts.get(piece, 0.0) + 0.5) / (heard + 1.0)
+            weights.append(PASSED + math.log((passed + usual) / (total + 1.0)))
+        return weights
+
+    def _rule_weight(self, left: str, right: tuple[str, ...]) -> float:
+        known = self._weights.get((left, right))
+        if known is None:
+            row: Mapping[tuple[str, ...], float] = self.grammar.rules.get(left, {})
+            total = sum(max(0.0, count) for count in row.values())
+            share = (max(0.0, row.get(right, 0.0)) + NEW_RULE) / (total + POSSIBLE * NEW_RULE)
+            known = self._weights[left, right] = math.log(max(share, LEAST_RULE))
+        return known
+
+
+def _recount(matrix: CorrelationMatrix, ngrams: Iterable[str], old: set[Concept], new: set[Concept]) -> None:
+    """Count a sentence with other concepts than it was counted with before."""
+    for concept in old - new:
+        matrix.concept_counts[concept] -= 1.0
+    for concept in new - old:
+        matrix.concept_counts[concept] += 1.0
+    for ngram in ngrams:
+        row = matrix.joint_counts.get(ngram)
+        if row is None or ngram in matrix.frozen_at:
+            continue
+        for concept in old - new:
+            row[concept] = max(0.0, row.get(concept, 0.0) - 1.0)
+        for concept in new - old:
+            row[concept] += 1.0
+
+
+def _with_spaces(salient: Iterable[Concept]) -> set[Concept]:
+    """Salient concepts, and for each of their spaces that anything of it is salient."""
+    found = set(salient)
+    return found | {Concept(f"{ANY}{concept.space}", 0) for concept in found}
+
+
+def _possible(scene: TableScene) -> set[Concept]:
+    """Concepts that something in a scene can be said to be."""
+    found = {Concept(ACTION_SPACE, part) for part in scene.parts} | {REFERENCE} | scene.goal
+    for concepts in (*scene.looks, *scene.places, *scene.relations.values(), *scene.goal_relations.values()):
+        found |= concepts
+    return found
+
+
+def _over_words(node: RclNode, origin: tuple[int, ...]) -> RclNode:
+    """A tree over pieces as one over words."""
+    return RclNode(
+        node.label,
+        node.concept,
+        origin[node.first - 1] + 1,
+        origin[node.last - 1] + 1,
+        tuple(_over_words(child, origin) for child in node.children),
+    )

@@ -1,0 +1,169 @@
+"""How the words of a sentence may be read: by alignment at first, by what was validated more and more."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from learning.concept_id import ACTION_SPACE, Concept
+from learning.grammar.innate import (
+    ABOVE,
+    BESIDE,
+    COLLECTIVE,
+    GROUP,
+    IT,
+    ONE,
+    REGION,
+    SIDES,
+    UNIT,
+    WHOLE,
+)
+from learning.grammar.phrase import Feature
+from learning.grammar.phrase_chart import Use
+from learning.grammar.weights import Weights
+from learning.grounding.alignment import Alignment, Meaning
+from learning.grounding.grounding import Grounding
+
+PRIOR_WEIGHT = 5.0
+"""How many validations the alignment of a word is worth before any came."""
+PRIOR_SHARE = 0.1
+"""Weight of the alignment beside each validation, so that what is validated by chance does not keep itself alive."""
+MOST_MEANINGS = 7
+"""Meanings tried of one word."""
+LEAST_PROBABILITY = 0.02
+"""Meanings rarer than this are not tried."""
+HOPELESS = 5.0
+"""A meaning whose weight is this much below that of passing the word over is not tried."""
+PASSED = -1.2
+"""Weight of passing any word over, beside how likely it is to mean nothing: words are said for a reason."""
+UNMEASURED = (
+    (IT, 20.0, math.inf),
+    (ABOVE, 5.0, 100.0),
+    (ONE, 5.0, 200.0),
+    (UNIT, 5.0, 100.0),
+    (BESIDE, 5.0, 60.0),
+    (WHOLE, 5.0, 60.0),
+    (REGION, 5.0, 60.0),
+)
+"""Kinds of meaning that no scene shows by itself, or nearly every scene does, with how often a word for them may have
+been heard."""
+IT_SHARE = 3.0
+"""How much likelier a word is to mean "it" than any other of these: it stands in every other command."""
+PLAIN = 0.5
+"""A word that means something with this probability needs no such kind."""
+RARE = 30.0
+"""A word heard less often than this may be an action that is seldom called so."""
+ACTING = 0.3
+"""A word that means some action with this probability may mean any."""
+UNMEASURED_PROBABILITY = 0.02
+SHORTEST_STEM = 3
+"""Letters of the shortest word that a longer one may be a form of."""
+HEADING_SPACE = "heading"
+"""Space under which alignment counts the direction in which something moved; the words are those of `SIDES`."""
+
+
+@dataclass(frozen=True, slots=True)
+class WordUses:
+    """The words of a sentence that may mean something, and the weight of all others.
+
+    Attributes:
+        kept: Positions in the sentence of the words that may mean something.
+        uses: How they may be read; positions count the kept words.
+        passed: Weight of passing over each kept word.
+    """
+
+    kept: tuple[int, ...]
+    uses: tuple[Use, ...]
+    passed: tuple[float, ...]
+
+
+class UseTable:
+    """Makes lexical entries from what was learned of words."""
+
+    def __init__(self, alignment: Alignment, grounding: Grounding, weights: Weights) -> None:
+        """Use these; they are read anew at every call."""
+        self.alignment = alignment
+        self.grounding = grounding
+        self.weights = weights
+
+    def meanings(self, word: str) -> dict[Meaning, float]:
+        """P(meaning | word): what was validated, with the alignment as prior."""
+        aligned: dict[Meaning, float] = {}
+        kin = self._kin_of_shape(word)
+        for meaning, share in self.alignment.meanings(word).items():
+            if meaning is not None and meaning.space == HEADING_SPACE:
+                meaning = SIDES[meaning.number]
+            elif kin and meaning == COLLECTIVE:
+                meaning = GROUP
+            aligned[meaning] = aligned.get(meaning, 0.0) + share
+        validated = self.grounding.counts.get(word)
+        if not validated:
+            return aligned
+        total = max(0.0, sum(validated.values()))
+        prior = PRIOR_WEIGHT + PRIOR_SHARE * total
+        known = dict.fromkeys((*validated, *aligned))
+        return {m: (max(0.0, validated.get(m, 0.0)) + prior * aligned.get(m, 0.0)) / (total + prior) for m in known}
+
+    def _kin_of_shape(self, word: str) -> bool:
+        """Whether a word is a longer form of one that names a shape, as plurals are in many languages."""
+        for length in (len(word) - 1, len(word) - 2):
+            stem = self.grounding.counts.get(word[:length]) if length >= SHORTEST_STEM else None
+            if stem and sum(n for m, n in stem.items() if m is not None and m.space == "shape") > 0.5 * sum(
+                stem.values()
+            ):
+                return True
+        return False
+
+    def of(self, words: Sequence[str], actions: Sequence[int]) -> WordUses:
+        """List how the words of a sentence may be read.
+
+        Args:
+            words: The sentence.
+            actions: Numbers of the known actions, one of each sort.
+        """
+        kept: list[int] = []
+        uses: list[Use] = []
+        passed: list[float] = []
+        for position, word in enumerate(words):
+            means = self.meanings(word)
+            skip = self._passed(word, means)
+            found = [use for use in self._uses(word, means, actions, len(kept)) if use.score > skip - HOPELESS]
+            if found:
+                kept.append(position)
+                uses += found
+                passed.append(skip)
+        return WordUses(tuple(kept), tuple(uses), tuple(passed))
+
+    def _passed(self, word: str, means: dict[Meaning, float]) -> float:
+        return math.log(means.get(None, 0.0) + 0.1) + PASSED + self.weights.learned.get(passed_feature(word), 0.0)
+
+    def _uses(self, word: str, means: dict[Meaning, float], actions: Sequence[int], position: int) -> list[Use]:
+        count = self.alignment.word_counts.get(word, 0.0)
+        likely = [(p, meaning) for meaning, p in means.items() if meaning is not None and p > LEAST_PROBABILITY]
+        likely.sort(key=lambda pair: (-pair[0], pair[1]))
+        chosen: dict[Concept, float] = {meaning: p for p, meaning in likely[:MOST_MEANINGS]}
+        kin = self._kin_of_shape(word)
+        plain = bool(likely) and likely[0][0] > PLAIN
+        for meaning, least, most in UNMEASURED:
+            if least <= count <= most and not kin and not plain:
+                probability = UNMEASURED_PROBABILITY * (IT_SHARE if meaning == IT else 1.0)
+                chosen[meaning] = max(chosen.get(meaning, 0.0), probability)
+        acting = sum(p for meaning, p in means.items() if meaning is not None and meaning.space == ACTION_SPACE)
+        if count < RARE or acting > ACTING:
+            for number in actions:
+                chosen.setdefault(Concept(ACTION_SPACE, number), UNMEASURED_PROBABILITY / 2)
+        learned = self.weights.learned
+        found = []
+        for meaning, p in chosen.items():
+            features: tuple[Feature, ...] = (("means", word, str(meaning)),)
+            if meaning.space == ACTION_SPACE:
+                # Words for one action are often words for another: "put" on its own, "put" after "take".
+                p = 0.5 * p + 0.5 * acting / max(1, len(actions))
+                features = (*features, ("means", word, ACTION_SPACE))
+            score = math.log(p + 0.01) + sum(learned.get(feature, 0.0) for feature in features)
+            found.append(Use(position, position + 1, meaning, score, features, word))
+        return found
+
+
+def passed_feature(word: str) -> Feature:
+    """Name the feature "this word is passed over"."""
+    return ("passed", word)

@@ -1,0 +1,59 @@
+"""Aligning words with what is salient."""
+
+import numpy as np
+import pytest
+
+from learning.concept_id import Concept
+from learning.grounding.alignment import Alignment
+
+COLOURS = {name: Concept("colour", number) for number, name in enumerate(("rosso", "blu", "verde"))}
+SHAPES = {name: Concept("shape", number) for number, name in enumerate(("cubo", "prisma"))}
+
+
+def taught(sentences: int = 200) -> Alignment:
+    rng = np.random.default_rng(0)
+    alignment = Alignment()
+    for _ in range(sentences):
+        colour, shape = str(rng.choice(list(COLOURS))), str(rng.choice(list(SHAPES)))
+        alignment.observe(("il", shape, colour), (COLOURS[colour], SHAPES[shape]))
+    return alignment
+
+
+@pytest.mark.parametrize(("word", "concept"), [*COLOURS.items(), *SHAPES.items()])
+def test_a_word_is_aligned_with_what_it_always_goes_with(word: str, concept: Concept) -> None:
+    meanings = taught().meanings(word)
+    assert max(meanings, key=lambda meaning: meanings[meaning]) == concept
+
+
+def test_a_word_of_every_sentence_is_of_no_concept_alone() -> None:
+    meanings = taught().meanings("il")
+    assert max(meanings, key=lambda meaning: meanings[meaning]) is None
+
+
+def test_what_was_never_heard_means_nothing() -> None:
+    assert taught().meanings("giallo") == {}
+
+
+def test_looking_again_replaces_what_was_counted() -> None:
+    alignment = Alignment()
+    words, salient = ("il", "cubo"), (COLOURS["rosso"], SHAPES["cubo"])
+    shares = alignment.observe(words, salient)
+    for _ in range(3):
+        shares = alignment.observe(words, salient, shares)
+    assert alignment.word_counts == {"il": 1, "cubo": 1}
+    # Each word's shares sum to one, so two words count two in all (floating point aside).
+    assert sum(alignment.totals.values()) == pytest.approx(2.0)
+
+
+def test_it_survives_a_file_but_for_rounding() -> None:
+    alignment = taught()
+    again = Alignment.from_json(alignment.to_json())
+    assert again.word_counts == alignment.word_counts
+    for word in COLOURS:
+        # Counts are saved with two decimals.
+        assert again.meanings(word)[COLOURS[word]] == pytest.approx(alignment.meanings(word)[COLOURS[word]], abs=1e-3)
+
+
+def test_counts_that_nobody_can_have_made_are_refused() -> None:
+    with pytest.raises(ValueError, match="count of 'cubo'"):
+        Alignment.from_json({"cubo": [-1, {}]})
