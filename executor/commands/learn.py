@@ -48,6 +48,7 @@ def learn(
         lessons = _from_demos(out, learner, demos, skip_broken, seed, jobs)
     else:
         lessons = _from_release(out, learner, train_robots, seed)
+    learner.settle()
     learner.knowledge.save(output)
     _tell(out, learner, output, before, lessons, seed)
 
@@ -144,7 +145,7 @@ def _tell(
     unheard = sum(lesson.unheard for lesson, _ in lessons)
     out.say(f"{heard} sentences heard, {validated} of them read in a way that does what was shown")
     if unheard:
-        out.say(f"{unheard} more were passed over: no action was seen with them, or it was shown at a table")
+        out.say(f"{unheard} more were passed over: no action was seen with them")
     out.say("concepts: " + ", ".join(f"{count} {name}" for name, count in concepts.items()))
     span = min(SPAN, len(times))
     out.say(f"time a demo: median of the first {span} {1000 * first:.0f} ms, of the last {span} {1000 * last:.0f} ms")

@@ -24,7 +24,7 @@ from learning.grounding.grounding import Grounding
 from learning.grounding.integer_program import Pair, select_groundings
 from learning.grounding.joined_words import JoinedWords
 from learning.grounding.ngrams import ngrams_of, parts_of
-from learning.grounding.table_scene import BESIDE, TableRecord, TableScene
+from learning.grounding.table_scene import BESIDE, NAMED, TableRecord, TableScene
 
 MEMORY = 1200
 """Sentences that are kept with their scenes to be read again."""
@@ -294,8 +294,8 @@ class Tongue:
             concepts = {concept for concept, count in known.items() if concept is not None and count >= LEAST_USE}
             concepts |= set(lent)
             if scene is not None and " " not in ngram:
-                # A new word may say what was done, or what the thing is like, where grammar expects that (7.3.3).
-                concepts.add(Concept(ACTION_SPACE, scene.action))
+                # A new word may say what was done, what the thing is like or where, as grammar expects there (7.3.3).
+                concepts |= {Concept(ACTION_SPACE, scene.action)} | scene.goal
                 if not any(concept in looks for looks in scene.looks for concept in lent):
                     concepts |= scene.looks[scene.moved]
             concepts = {concept for concept in concepts if self._borne_out(ngram, concept)}
@@ -320,7 +320,7 @@ class Tongue:
         matrix = self.correlation
         if concept in UNMEASURED:
             return max(self._hypotheses.get(ngram, {}).values(), default=0.0) < MEASURED
-        heard, every = matrix.ngram_counts.get(ngram, 0.0), Concept(f"{ANY}{concept.space}", 0)
+        heard, every = matrix.ngram_counts.get(ngram, 0.0), _any_like(concept)
         usual = matrix.concept_counts.get(concept, 0.0) / max(matrix.concept_counts.get(every, 0.0), 1.0)
         if matrix.demos > FIRST_SENTENCES and usual > 1.0 / LEAST_LIFT:
             return False  # what is true of nearly everything tells nothing
@@ -343,7 +343,11 @@ class Tongue:
         """Share of an n-gram's readings that are of one feature space."""
         row = self._readings(ngram)
         total = sum(row.values())
-        same = sum(count for concept, count in row.items() if concept is not None and concept.space == space)
+        same = sum(
+            count
+            for concept, count in row.items()
+            if concept is not None and concept.space.removeprefix(NAMED) == space.removeprefix(NAMED)
+        )
         return same / total if total >= LEAST_HEARD else 0.0
 
     def _coheres(self, ngram: str) -> bool:
@@ -404,7 +408,7 @@ class Tongue:
 def _recount(matrix: CorrelationMatrix, ngrams: Iterable[str], old: set[Concept], new: set[Concept]) -> None:
     """Count a sentence with other concepts than it was counted with before."""
     for concept in old - new:
-        matrix.concept_counts[concept] -= 1.0
+        matrix.concept_counts[concept] = max(1.0, matrix.concept_counts[concept] - 1.0)  # rows may still hold it
     for concept in new - old:
         matrix.concept_counts[concept] += 1.0
     for ngram in ngrams:
@@ -420,7 +424,12 @@ def _recount(matrix: CorrelationMatrix, ngrams: Iterable[str], old: set[Concept]
 def _with_spaces(salient: Iterable[Concept]) -> set[Concept]:
     """Salient concepts, and for each of their spaces that anything of it is salient."""
     found = set(salient)
-    return found | {Concept(f"{ANY}{concept.space}", 0) for concept in found}
+    return found | {_any_like(concept) for concept in found}
+
+
+def _any_like(concept: Concept) -> Concept:
+    """The pseudo-concept that anything of a concept's feature space is salient; sorts are of the space they sort."""
+    return Concept(f"{ANY}{concept.space.removeprefix(NAMED)}", 0)
 
 
 def _possible(scene: TableScene) -> set[Concept]:

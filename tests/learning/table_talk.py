@@ -7,25 +7,29 @@ import numpy as np
 from learning.concept_id import Concept
 from learning.grounding.ngrams import words_of
 from learning.grounding.table_scene import BESIDE, SIDE_PLACES, TableRecord, TableScene
-from teleop.annotators.facts import Destination, TableFacts, Thing
+from teleop.annotators.facts import Destination, Relation, TableAction, TableFacts, Thing
 from teleop.annotators.telling import tell_table
 
 COLOURS = ("red", "blue", "green", "yellow")
 SHAPES = ("cube", "apple", "bowl", "mug", "fork")
-ACTIONS = {"pick up": (1, (1,)), "put down": (2, (2,)), "move": (3, (1, 2, 3))}
-SIDES = ("left", "right", "front", "behind")
+ACTIONS: dict[TableAction, tuple[int, tuple[int, ...]]] = {
+    "pick up": (1, (1,)),
+    "put down": (2, (2,)),
+    "move": (3, (1, 2, 3)),
+}
+SIDES: tuple[Relation, ...] = ("left", "right", "front", "behind")
 
 
 def table_talk(
     rng: np.random.Generator, count: int, language: str, people: int = 4
-) -> Iterator[tuple[list[tuple[str, ...]], TableRecord, TableScene, str]]:
+) -> Iterator[tuple[list[tuple[str, ...]], TableRecord, TableScene, TableAction]]:
     """Words of sentences, what was shown (nothing measured, and in symbols), and the action, of some demos."""
     nothing = np.zeros((0, 3))
     for _ in range(count):
         things = tuple(
             Thing(index, str(rng.choice(SHAPES)), str(rng.choice(COLOURS)), 0.65, 0.4 * index) for index in range(4)
         )
-        action = str(rng.choice(list(ACTIONS)))
+        action = list(ACTIONS)[int(rng.integers(len(ACTIONS)))]
         side = int(rng.integers(4))
         by_place = rng.random() < 0.3
         goal = Destination(place=("top", "left")) if by_place else Destination(relation=SIDES[side], reference=1)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from learning.evaluation.table_gold import GoldSentence, gold_sentence
-from teleop.annotators.facts import Destination, OrderingFacts, TableFacts, Thing
+from teleop.annotators.facts import Destination, OrderingFacts, Relation, TableAction, TableFacts, Thing
 from teleop.annotators.telling import tell_ordering, tell_table
 
 CUBE = Thing(0, "cube", "red", 0.6, 0.1)
@@ -60,8 +60,12 @@ def test_a_misspelt_word_means_what_was_meant() -> None:
 def test_every_sentence_about_a_table_has_a_tree(language: str) -> None:
     rng = np.random.default_rng(3)
     places = [Destination(place=("top", "left")), Destination(place=("middle", "middle"))]
-    related = [Destination(relation=way, reference=1) for way in ("left", "right", "front", "behind", "in", "on")]
-    for action, goals in (("pick up", [None]), ("put down", places + related), ("move", places + related)):
+    ways: tuple[Relation, ...] = ("left", "right", "front", "behind", "in", "on")
+    related = [Destination(relation=way, reference=1) for way in ways]
+    shown: list[tuple[TableAction, list[Destination | None]]] = [
+        ("pick up", [None]), ("put down", [*places, *related]), ("move", [*places, *related])
+    ]  # fmt: skip
+    for action, goals in shown:
         for goal in goals:
             facts = TableFacts(action, CUBE, (CUBE, BOWL, MUG), goal, action == "put down")
             for told in (each for _ in range(4) for each in tell_table(facts, 8, language, rng)):
