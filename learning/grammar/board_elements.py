@@ -171,6 +171,11 @@ class BoardElements:
 
         return self._among(mask & self.things, short_of)
 
+    def open_to_choice(self, mask: int) -> bool:
+        """Whether more than one of these elements is clear, so that a rank among them says something."""
+        clear = mask & self._open or mask
+        return bool(clear & (clear - 1))
+
     def _among(self, mask: int, cost: Callable[[int], float]) -> tuple[int, ...]:
         found: list[int] = []
         for part in (mask & self._open, mask & self._bearing, mask):
@@ -215,6 +220,7 @@ class BoardElements:
         return known
 
     def _related(self, relation: Concept, ground: int, head: int) -> tuple[int, ...]:
+        head &= ~self.held  # what is in the gripper stands nowhere
         if relation == NEAREST:
             grounds = bits(ground)
             # What is over or under a thing is on it, not near it.

@@ -31,12 +31,14 @@ class Sense:
         nearest: Whether the nearest of them is meant, to what is not said.
         refers: Whether it is the thing that was spoken of before.
         feature: How the description was understood.
+        idle: Whether a rank or side in it ("nearest", "left") rules nothing out.
     """
 
     elements: int
     nearest: bool
     refers: bool
     feature: str
+    idle: bool = False
 
 
 def fits(description: Description, more: Concept) -> bool:
@@ -81,7 +83,8 @@ def senses(description: Description, scene: BoardElements) -> list[Sense]:
             return []
         mask = scene.landmarks(kind, sides)
         how = "place" if places else "side alone"
-        return [Sense(mask, rank == NEAREST_ONE, False, how)] if mask else []
+        idle = rank is not None and not scene.open_to_choice(mask)
+        return [Sense(mask, rank == NEAREST_ONE, False, how, idle)] if mask else []
     found: list[tuple[int, str]] = []
     shape = by_space["shape"][0] if "shape" in by_space else None
     if not kinds and len(colours) < 2 and size in (None, 1):
@@ -101,14 +104,16 @@ def senses(description: Description, scene: BoardElements) -> list[Sense]:
     for mask, how in found:
         if not mask:
             continue
+        idle = (rank is not None or bool(sides)) and not scene.open_to_choice(mask)
         if sides:
             # "The left block": the one furthest to that side.
             if rank is not None or len(sides) > 1:
                 continue
             (side,) = sides
-            results += [Sense(part, False, False, f"{how}, side") for part in scene.ranked(EXTREMES[side], mask)]
+            furthest = scene.ranked(EXTREMES[side], mask)
+            results += [Sense(part, False, False, f"{how}, side", idle) for part in furthest]
         elif rank is None or rank == NEAREST_ONE:
-            results.append(Sense(mask, rank == NEAREST_ONE, False, how))
+            results.append(Sense(mask, rank == NEAREST_ONE, False, how, idle))
         else:
-            results += [Sense(part, False, False, how) for part in scene.ranked(rank, mask) if part]
+            results += [Sense(part, False, False, how, idle) for part in scene.ranked(rank, mask) if part]
     return results

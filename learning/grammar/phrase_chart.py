@@ -12,11 +12,13 @@ from typing import cast
 from learning.concept_id import ACTION_SPACE, Concept
 from learning.grammar.board_elements import BoardElements
 from learning.grammar.description import Description, Sense, fits, senses
-from learning.grammar.innate import UNIT
+from learning.grammar.innate import ABOVE, BESIDE, SIDES, UNIT, WITHIN
 from learning.grammar.phrase import Feature, Phrase
 
 JOINED = ("action", "relation", "word", "heading")
 """Labels of lexical phrases that words in a row may make up together."""
+PLACING = (ABOVE, WITHIN, BESIDE)
+"""Relations that a word for a side may be said with: "on the left of", "in front of" are that side alone."""
 MAX_PASSED = 3
 """Most words in a row that are passed over inside a phrase."""
 BEAMS = {"word": 8, "relation": 5, "heading": 4, "number": 3, "unit": 2, "action": 4}
@@ -37,6 +39,7 @@ class Use:
         score: Weight of reading it so.
         features: Features that the weight is made of.
         ngram: The words.
+        following: The word after them in the sentence, "" when that is not told.
     """
 
     first: int
@@ -45,6 +48,7 @@ class Use:
     score: float
     features: tuple[Feature, ...]
     ngram: str
+    following: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +133,9 @@ class PhraseChart:
             score, features = use.score, use.features
             if len(labels) > 1:
                 extra: tuple[Feature, ...] = (("used", use.ngram, label), ("used", space, label))
+                if use.following:
+                    # "On the left block" or "on the left of the block": the next word tells.
+                    extra = (*extra, ("followed", label, use.following))
                 score += sum(map(self._weight, extra))
                 features = (*features, *extra)
             for after in range(use.after, min(use.after + MAX_PASSED, self.length) + 1):
@@ -185,6 +192,8 @@ class PhraseChart:
                     for following in nexts:
                         if phrase.concept == following.concept:
                             self._merge(found, phrase, following)
+                        elif label == "relation" and phrase.concept in PLACING and following.concept in SIDES:
+                            self._merge(found, phrase, following, "relation to a side")
         words = right.get("word")
         if words:
             for whole in left.get("description", ()):
@@ -218,18 +227,18 @@ class PhraseChart:
                 for measure in measures:
                     self._shift(found, measure, heading, (heading, measure))
 
-    def _merge(self, found: dict[tuple[str, object], Phrase], left: Phrase, right: Phrase) -> None:
-        """Words in a row that mean the same are one: "pick up", "on top of"."""
-        feature: Feature = ("joined", left.concept.space if left.concept else "")
+    def _merge(self, found: dict[tuple[str, object], Phrase], left: Phrase, right: Phrase, how: str = "") -> None:
+        """Make one phrase of words in a row, of one meaning ("pick up"), or relation and side ("on the left")."""
+        feature: Feature = ("joined", how or (left.concept.space if left.concept else ""))
         merged = Phrase(
             left.label,
             left.first,
             right.after,
             left.score + right.score + self._weight(feature),
-            left.meaning,
+            right.meaning,
             (*left.features, *right.features, feature),
             (),
-            left.concept,
+            right.concept,
             (*left.used, *right.used),
         )
         _keep(found, merged)
@@ -275,6 +284,8 @@ class PhraseChart:
         ranks: tuple[Feature, ...] = tuple(("ranked", str(each)) for each in description if each.space == "rank")
         for sense in known:
             features: tuple[Feature, ...] = (("sense", sense.feature), *ranks)
+            if sense.idle:
+                features = (*features, ("ranked", "in vain"))
             score = phrase.score + sum(map(self._weight, features))
             denotation = (sense.elements, sense.nearest, sense.refers)
             features = (*phrase.features, *features)
@@ -321,6 +332,8 @@ class PhraseChart:
             features: list[Feature] = [("modified", str(meaning.relation))]
             if elements == head:
                 features.append(("modified", "in vain"))
+            elif nearest and not self.scene.open_to_choice(elements):
+                features.append(("ranked", "in vain"))
             if number:
                 features.append(("modified", f"variant {number}"))
             if len(whole.children) and whole.children[-1].label == "modifier":

@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any
 
-from learning.grammar.innate import ABOVE, EXTREMES, NEAREST_ONE
+from learning.grammar.innate import ABOVE, EXTREMES, NEAREST_ONE, SIDES
 from learning.grammar.phrase import Feature
 from learning.saved_numbers import saved_count, saved_number
 
@@ -41,8 +41,11 @@ PRIORS: dict[Feature, float] = {
     ("joined", "action"): -1.0,
     # What is in a place is on its ground too, but that says less.
     ("relation", str(ABOVE), "place"): -1.0,
+    # What is to one side of a place is off the board, or is part of it and called so.
+    **{("relation", str(side), "place"): -2.0 for side in SIDES},
     # Nobody adds words that tell nothing.
     ("modified", "in vain"): -1.0,
+    ("ranked", "in vain"): -1.5,
     ("modified", "variant 1"): -0.5,
     ("modified", "variant 2"): -0.5,
     ("modified", "again"): -0.5,

@@ -38,12 +38,29 @@ def _of_state(segmentation: Segmentation, segment: Segment) -> dict[str, FloatAr
     if observation.gripper_opening is not None:
         values["opening"] = np.array([np.median(observation.gripper_opening[frames])])
     if observation.wrist_force is not None:
-        values["force"] = observation.wrist_force[frames].mean(axis=0)
+        values["force"] = _force(segmentation, segment, observation.wrist_force)
     if segment.state.raised:
         _, half_height = box_size(observation)
         height = np.quantile(observation.location[frames, moved, 2], HIGH)
         values["clearance"] = np.array([height - half_height[moved]])
     return values
+
+
+def _force(segmentation: Segmentation, segment: Segment, felt: FloatArray) -> FloatArray:
+    """What the wrist feels in a state [N]: of a hand that leans on an object, while it leans most.
+
+    Args:
+        segmentation: The demo.
+        segment: Its state.
+        felt: Force in every frame, (F, 3) [N].
+    """
+    here = felt[_frames(segmentation, segment)]
+    free = [felt[_frames(segmentation, each)] for each in segmentation.segments if not each.state.touching]
+    if segment.state.side is None or not free:
+        return np.asarray(here.mean(axis=0))
+    # Coming on and letting go take half of the time: their mean would be a touch that nobody showed.
+    lean = np.linalg.norm(here - np.median(np.concatenate(free), axis=0), axis=1)
+    return np.asarray(here[lean >= np.median(lean)].mean(axis=0))
 
 
 def _of_change(

@@ -21,6 +21,7 @@ from learning.grammar.innate import (
     SIDE_STEPS,
     SIDES,
     SINGLE,
+    UNIT,
     WHOLE,
     WITHIN,
 )
@@ -74,7 +75,7 @@ def _destination(scene: BoardElements, moved: int, placement: int) -> set[Concep
     for side, (dx, dy) in zip(SIDES, SIDE_STEPS, strict=True):
         steps = (x - a) * dx + (y - b) * dy
         if support < 0 and 0 < steps <= LARGEST_COUNT and (x - a, y - b) == (steps * dx, steps * dy):
-            found |= {HEADINGS[side.number], COUNTS[steps - 1]}
+            found |= {HEADINGS[side.number], COUNTS[steps - 1], UNIT}
     return found
 
 

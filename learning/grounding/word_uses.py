@@ -9,8 +9,11 @@ from learning.grammar.innate import (
     ABOVE,
     BESIDE,
     COLLECTIVE,
+    COUNTS,
     GROUP,
     IT,
+    NEAREST,
+    NEAREST_ONE,
     ONE,
     REGION,
     SIDES,
@@ -55,6 +58,14 @@ RARE = 30.0
 ACTING = 0.3
 """A word that means some action with this probability may mean any."""
 UNMEASURED_PROBABILITY = 0.02
+ESTABLISHED = 10.0
+"""Validations of a meaning after which it is trusted."""
+RANK_SHARE = 0.3
+"""How likely a word for "nearest to" is said of the nearest one, next to how likely it is said of something."""
+DISPLACING = (*SIDES, *COUNTS, UNIT)
+"""What is said of how far something moves: always together, so that few demos do not tell one from the next."""
+SENTENCE_END = "."
+"""Stands for the word after the last; words hold no punctuation."""
 SHORTEST_STEM = 3
 """Letters of the shortest word that a longer one may be a form of."""
 HEADING_SPACE = "heading"
@@ -103,6 +114,14 @@ class UseTable:
         known = dict.fromkeys((*validated, *aligned))
         return {m: (max(0.0, validated.get(m, 0.0)) + prior * aligned.get(m, 0.0)) / (total + prior) for m in known}
 
+    def _established(self, word: str, meaning: Concept) -> bool:
+        """Whether most validations of a word are of a meaning."""
+        validated = self.grounding.counts.get(word)
+        if not validated:
+            return False
+        amount = validated.get(meaning, 0.0)
+        return amount >= ESTABLISHED and amount > PLAIN * sum(validated.values())
+
     def _kin_of_shape(self, word: str) -> bool:
         """Whether a word is a longer form of one that names a shape, as plurals are in many languages."""
         for length in (len(word) - 1, len(word) - 2):
@@ -126,7 +145,8 @@ class UseTable:
         for position, word in enumerate(words):
             means = self.meanings(word)
             skip = self._passed(word, means)
-            found = [use for use in self._uses(word, means, actions, len(kept)) if use.score > skip - HOPELESS]
+            after = words[position + 1] if position + 1 < len(words) else SENTENCE_END
+            found = [use for use in self._uses(word, after, means, actions, len(kept)) if use.score > skip - HOPELESS]
             if found:
                 kept.append(position)
                 uses += found
@@ -136,7 +156,9 @@ class UseTable:
     def _passed(self, word: str, means: dict[Meaning, float]) -> float:
         return math.log(means.get(None, 0.0) + 0.1) + PASSED + self.weights.learned.get(passed_feature(word), 0.0)
 
-    def _uses(self, word: str, means: dict[Meaning, float], actions: Sequence[int], position: int) -> list[Use]:
+    def _uses(
+        self, word: str, after: str, means: dict[Meaning, float], actions: Sequence[int], position: int
+    ) -> list[Use]:
         count = self.alignment.word_counts.get(word, 0.0)
         likely = [(p, meaning) for meaning, p in means.items() if meaning is not None and p > LEAST_PROBABILITY]
         likely.sort(key=lambda pair: (-pair[0], pair[1]))
@@ -151,6 +173,11 @@ class UseTable:
         if count < RARE or acting > ACTING:
             for number in actions:
                 chosen.setdefault(Concept(ACTION_SPACE, number), UNMEASURED_PROBABILITY / 2)
+        if self._established(word, NEAREST):
+            chosen[NEAREST_ONE] = max(chosen.get(NEAREST_ONE, 0.0), RANK_SHARE * means[NEAREST])
+        if count < RARE and sum(p for meaning, p in means.items() if meaning in DISPLACING) > ACTING:
+            for meaning in DISPLACING:
+                chosen.setdefault(meaning, UNMEASURED_PROBABILITY / 2)
         learned = self.weights.learned
         found = []
         for meaning, p in chosen.items():
@@ -160,7 +187,7 @@ class UseTable:
                 p = 0.5 * p + 0.5 * acting / max(1, len(actions))
                 features = (*features, ("means", word, ACTION_SPACE))
             score = math.log(p + 0.01) + sum(learned.get(feature, 0.0) for feature in features)
-            found.append(Use(position, position + 1, meaning, score, features, word))
+            found.append(Use(position, position + 1, meaning, score, features, word, after))
         return found
 
 

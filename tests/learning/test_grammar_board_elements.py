@@ -122,3 +122,16 @@ def test_one_thing_is_not_described_twice_in_one_respect() -> None:
     assert not fits(frozenset({FRONT}), BACK)
     assert fits(frozenset({FRONT}), LEFT)
     assert not fits(frozenset({RED}), IT)
+
+
+def test_what_is_in_the_gripper_stands_nowhere() -> None:
+    held = BoardElements(Arrangement((column(0, 0), column(4, 4)), (0, 0), (0, 0), (0, 0), 0))
+    back = held.landmarks(EDGE, frozenset({1}))
+    assert not any(mask & 1 for mask in held.related(WITHIN, back, held.blocks))
+
+
+def test_a_rank_says_something_only_of_several_clear_things(scene: BoardElements) -> None:
+    assert scene.open_to_choice(scene.looking(RED))
+    assert not scene.open_to_choice(1 << 0 | 1 << 2)
+    (left,) = senses(frozenset({LEFT, PRISM}), scene)
+    assert left.idle
