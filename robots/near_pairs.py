@@ -66,6 +66,7 @@ class NearPairs:
         numbers: What they take besides.
         version: Counts how often what is around was placed.
         matrix: How driven joints move Pinocchio's, (nv, n).
+        moved_by: Which motions of driven joints, and of the base, change distances of each pair, (k, n + 2).
         contacts: Pairs that handling things brings together: a finger or what is held, and a thing, (k,).
     """
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from robots import RobotModel
 from robots.kinematics import rotation_matrix
+from robots.near_kernel import BoolArray, IntArray
 from robots.obstacle import Obstacle
 from robots.pose import FloatArray, Pose
 
@@ -23,7 +24,7 @@ from .errors import ServoError
 from .finger_servo import FingerServo
 from .servo_brakes import ServoBrakes, State
 from .servo_camera import body_axes, camera_axes_in_base
-from .servo_guard import BoolArray, IntArray, ServoGuard
+from .servo_guard import ServoGuard
 from .servo_input import why_to_stop
 from .servo_notes import ServoNotes
 from .servo_outcome import outcome

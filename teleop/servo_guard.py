@@ -10,17 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robots import RobotModel
 from robots.ik_kernel import compiled
+from robots.near_kernel import BoolArray, IntArray
 from robots.near_pairs import NearPairs
 from robots.near_shapes import RobotShapes
 from robots.obstacle import Obstacle
 from robots.pose import FloatArray, Pose
-
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 STOP = 0.007
 """Distance at which approaches end [m];"""

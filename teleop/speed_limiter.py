@@ -6,11 +6,12 @@ import numpy as np
 
 from robots import RobotModel
 from robots.ik_kernel import compiled
+from robots.near_kernel import BoolArray, IntArray
 from robots.pose import FloatArray
 
 from .arm_servo import ArmIntent, ArmServo
 from .servo_brakes import ServoBrakes
-from .servo_guard import BoolArray, Dampers, IntArray, ServoGuard
+from .servo_guard import Dampers, ServoGuard
 from .servo_notes import BASE, ServoNotes
 from .servo_projection import project
 from .servo_reason import DriveReason

@@ -4,7 +4,7 @@ import numpy as np
 
 from executor.collections.driven_grasps import moved, pose_of
 from executor.collections.performance import PlannedDemo
-from executor.collections.rehearsal import Rehearsal, turned
+from executor.collections.rehearsal import Rehearsal, Touch, turned
 from executor.collections.sight_lines import SightLines
 from robots.gripper import Gripper
 from robots.kinematics import quaternion_xyzw, rotation_matrix
@@ -89,13 +89,10 @@ def _laying(rehearsal: Rehearsal, key: Pose, top: FloatArray, thing: str, high: 
         high: How far up it begins [m].
     """
     for _ in range(4):
-        above = moved(key, np.array([0.0, 0.0, high]))
-        came = rehearsal.along(rehearsal.q, (Reach(above, QUICK),), 0.0)
-        if came.reason:
+        found = _lowered(rehearsal, key, thing, high)
+        if found is None:
             return None
-        touch = rehearsal.until_touch(came.q, moved(key, np.array([0.0, 0.0, -0.03])), 0.0, thing)
-        if touch is None:
-            return None
+        above, touch = found
         out = rotation_matrix(key.orientation_xyzw) @ rehearsal.arm.gripper.approach
         out = np.array([out[0], out[1], 0.0]) / np.hypot(out[0], out[1])
         sides = [(float((each.point_on_second - top) @ out), each.distance) for each in touch.near]
@@ -107,6 +104,16 @@ def _laying(rehearsal: Rehearsal, key: Pose, top: FloatArray, thing: str, high: 
         axis = np.array([-out[1], out[0], 0.0])
         key = Pose(touch.tool.position, turned(lean * axis, key.orientation_xyzw))
     return None
+
+
+def _lowered(rehearsal: Rehearsal, key: Pose, thing: str, high: float) -> tuple[Pose, Touch] | None:
+    """Where the tool begins so high [m] above a thing, and how it touches it; None where that is out of reach."""
+    above = moved(key, np.array([0.0, 0.0, high]))
+    came = rehearsal.along(rehearsal.q, (Reach(above, QUICK),), 0.0)
+    if came.reason:
+        return None
+    touch = rehearsal.until_touch(came.q, moved(key, np.array([0.0, 0.0, -0.03])), 0.0, thing)
+    return None if touch is None else (above, touch)
 
 
 def _tipping(
@@ -122,13 +129,10 @@ def _tipping(
         thing: The thing's name.
         high: How far up it begins [m].
     """
-    above = moved(key, np.array([0.0, 0.0, high]))
-    came = rehearsal.along(rehearsal.q, (Reach(above, QUICK),), 0.0)
-    if came.reason:
+    found = _lowered(rehearsal, key, thing, high)
+    if found is None:
         return None
-    touch = rehearsal.until_touch(came.q, moved(key, np.array([0.0, 0.0, -0.03])), 0.0, thing)
-    if touch is None:
-        return None
+    above, touch = found
     off = (top - touch.point)[:2]
     aside = np.array([*(off if rim == 0.0 else (0.0, 0.0)), 0.0])
     return moved(above, aside), moved(touch.tool, aside)

@@ -34,12 +34,9 @@ class Tagger:
         """Train on tagged sentences.
 
         Raises:
-            LearningError: NLTK is not installed, or there is nothing to train on.
+            LearningError: There is nothing to train on.
         """
-        try:
-            probability, hmm = import_module("nltk.probability"), import_module("nltk.tag.hmm")
-        except ImportError as error:
-            raise LearningError("the HMM baseline needs NLTK: pip install nltk") from error
+        probability, hmm = import_module("nltk.probability"), import_module("nltk.tag.hmm")
         given = list(sentences)
         states = sorted({tag for sentence in given for _, tag in sentence})
         symbols = sorted({word for sentence in given for word, _ in sentence})

@@ -12,21 +12,20 @@ from learning.grammar.chart import Chart, Reading
 from learning.grammar.pcfg import Pcfg
 from learning.grammar.preferences import MOVES_FEATURE, Preferences, lexical_feature, rule_feature, skip_feature
 from learning.grammar.scene import SceneSets
-from learning.grounding.case_analysis import filter_hypotheses
 from learning.grounding.correlation import CorrelationMatrix
 from learning.grounding.grounding import Grounding
-from learning.grounding.integer_program import Pair, select_groundings
+from learning.grounding.hypotheses import supposed
+from learning.grounding.integer_program import Pair
 from learning.grounding.lexicon import lexical_entries
-from learning.grounding.ngrams import ngrams_of, parts_of
+from learning.grounding.ngrams import ngrams_of
 from learning.grounding.salience import focal_concepts, salient_concepts
+from learning.grounding.shares import shares_of
 from learning.percept import Percept, ShownAction
 
 LEAST_SHARE = 0.01
 """Readings whose share of the credit is smaller are not counted."""
 LEAST_STRENGTH = 0.05
 """Pairs with a weaker correlation are no hypotheses."""
-COMPARABLE = 0.85
-"""A part of an n-gram with this share of its strength or more is a hypothesis too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,16 +102,7 @@ class LanguageLearner:
         """Select (4.2) and filter (4.3 to 4.6) grounding hypotheses for the n-grams and concepts at hand."""
         strengths = {(ngram, concept): self.strength(ngram, concept) for ngram in ngrams for concept in sorted(salient)}
         strengths = {pair: k if k >= LEAST_STRENGTH else 0.0 for pair, k in strengths.items()}
-        chosen = select_groundings(strengths)
-        # The program takes the strongest pairs up to its bound, so of "red" and "the red", equally strong, it may have
-        # taken the longer alone; the cases of 4.3 to 4.6 are about both.
-        chosen |= {
-            (part, concept)
-            for ngram, concept in chosen
-            for part in parts_of(ngram)
-            if strengths.get((part, concept), 0.0) >= COMPARABLE * strengths[ngram, concept]
-        }
-        return {pair: strengths[pair] for pair in sorted(filter_hypotheses(chosen))}
+        return supposed(strengths)
 
     def log_weight(self, reading: Reading) -> float:
         """Log probability of a reading, not normalised, with the preference for readings that leave little open."""
@@ -123,11 +113,11 @@ class LanguageLearner:
 
         A reading that would have allowed k different moves predicted the one that was shown with probability 1/k.
         """
-        shares = _shares([self.log_weight(reading) - math.log(reading.moves) for reading in validated])
+        shares = shares_of([self.log_weight(reading) - math.log(reading.moves) for reading in validated])
         gradient: defaultdict[str, float] = defaultdict(float)
         for reading, share in zip(validated, shares, strict=True):
             _add_features(gradient, words, reading, share)
-        for reading, share in zip(readings, _shares([self.log_weight(r) for r in readings]), strict=True):
+        for reading, share in zip(readings, shares_of([self.log_weight(r) for r in readings]), strict=True):
             _add_features(gradient, words, reading, -share)
         self.preferences.follow(gradient)
         every = ngrams_of(words)
@@ -187,13 +177,6 @@ class LanguageLearner:
         learner.grammar = Pcfg.from_json(data["grammar"])
         learner.preferences = Preferences.from_json(data["preferences"])
         return learner
-
-
-def _shares(scores: list[float]) -> list[float]:
-    top = max(scores)
-    shares = [math.exp(score - top) for score in scores]
-    total = sum(shares)
-    return [share / total for share in shares]
 
 
 def _add_features(gradient: defaultdict[str, float], words: tuple[str, ...], reading: Reading, amount: float) -> None:

@@ -30,6 +30,7 @@ from learning.grounding.alignment import Alignment
 from learning.grounding.attention import salient_meanings
 from learning.grounding.grounding import Grounding
 from learning.grounding.memory import LARGEST, Episode, Memory
+from learning.grounding.shares import shares_of
 from learning.grounding.word_uses import UseTable, passed_feature
 from learning.percept import ShownAction
 from learning.saved_numbers import saved_count
@@ -67,7 +68,7 @@ class Readings:
 
     def shares(self) -> list[float]:
         """Probability of each reading."""
-        return _shares([reading.score for reading in self.readings])
+        return shares_of([reading.score for reading in self.readings])
 
 
 class ReadingLearner:
@@ -169,7 +170,7 @@ class ReadingLearner:
             return False
         kept_words = tuple(words[position] for position in found.kept)
         gradient: defaultdict[Feature, float] = defaultdict(float)
-        credit = _shares([reading.score - math.log(reading.choices) for reading in right])
+        credit = shares_of([reading.score - math.log(reading.choices) for reading in right])
         for reading, share in zip(right, credit, strict=True):
             _add_features(gradient, kept_words, reading, share)
         for reading, share in zip(found.readings, found.shares(), strict=True):
@@ -249,15 +250,6 @@ class ReadingLearner:
         learner.weights = Weights.from_json(data["weights"])
         learner._uses = UseTable(learner.alignment, learner.grounding, learner.weights)
         return learner
-
-
-def _shares(scores: list[float]) -> list[float]:
-    if not scores:
-        return []
-    top = max(scores)
-    shares = [math.exp(score - top) for score in scores]
-    total = sum(shares)
-    return [share / total for share in shares]
 
 
 def _meant(reading: CommandReading) -> Iterator[tuple[int, Concept]]:

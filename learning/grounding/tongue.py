@@ -18,10 +18,10 @@ from learning.concept_id import ACTION_SPACE, REFERENCE, Concept
 from learning.grammar.pcfg import Pcfg
 from learning.grammar.rcl import RclNode
 from learning.grammar.table_chart import Expected, TableChart, WordUse
-from learning.grounding.case_analysis import filter_hypotheses
 from learning.grounding.correlation import CorrelationMatrix
 from learning.grounding.grounding import Grounding
-from learning.grounding.integer_program import Pair, select_groundings
+from learning.grounding.hypotheses import supposed
+from learning.grounding.integer_program import Pair
 from learning.grounding.joined_words import JoinedWords
 from learning.grounding.ngrams import ngrams_of, parts_of
 from learning.grounding.table_scene import BESIDE, NAMED, TableRecord, TableScene
@@ -32,8 +32,6 @@ AGAIN = 15
 """Of those, so many are read again after each demo."""
 LEAST_STRENGTH = 0.08
 """Pairs with a weaker correlation are no hypotheses."""
-COMPARABLE = 0.85
-"""A part of an n-gram with this share of its strength or more is a hypothesis too."""
 PRIOR = 2.0
 """How many readings a hypothesis of strength 1 is worth before any came."""
 NEW_WORD = 0.02
@@ -247,15 +245,8 @@ class Tongue:
                 strength = self.correlation.strength_beyond_chance(ngram, concept)
                 strengths[ngram, concept] = strength if strength >= LEAST_STRENGTH else 0.0
                 self._hypotheses.get(ngram, {}).pop(concept, None)
-        chosen = select_groundings(strengths)
-        chosen |= {
-            (part, concept)
-            for ngram, concept in chosen
-            for part in parts_of(ngram)
-            if strengths.get((part, concept), 0.0) >= COMPARABLE * strengths[ngram, concept]
-        }
-        for ngram, concept in filter_hypotheses(chosen):
-            self._hypotheses.setdefault(ngram, {})[concept] = strengths[ngram, concept]
+        for (ngram, concept), strength in supposed(strengths).items():
+            self._hypotheses.setdefault(ngram, {})[concept] = strength
 
     def _read(self, heard: Heard) -> bool:
         """Read a sentence with what is known now, and count that in the place of what it counted before."""

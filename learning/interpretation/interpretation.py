@@ -1,10 +1,17 @@
 """What comes of understanding a sentence: a goal, a tree, and an explanation."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from learning.grammar.rcl import RclNode
 from learning.graphs import ActionGraphlet
+from learning.percept import Percept
 from robots.pose import FloatArray
+
+MEANINGFUL = 0.6
+"""A word grounded in at least this share of its validations is not passed over without saying so."""
+ESTABLISHED = 3.0
+"""Validations after which that share is trusted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +61,57 @@ class Interpretation:
 def refusal(words: tuple[str, ...], why: str, unknown: tuple[str, ...] = ()) -> Interpretation:
     """Say why nothing was understood."""
     return Interpretation(words, False, (), None, why, unknown=unknown)
+
+
+def understanding(
+    words: tuple[str, ...],
+    percept: Percept,
+    action: tuple[int, ActionGraphlet],
+    move: tuple[int, int | None],
+    candidates: tuple[Sequence[int], Sequence[int]],
+    passed: tuple[tuple[str, ...], tuple[str, ...]],
+    tree: RclNode,
+    confidence: float,
+) -> Interpretation:
+    """Say what was understood.
+
+    Args:
+        words: The sentence.
+        percept: The scene.
+        action: Number and graphlet of the action.
+        move: Indices of the moved object and of the placement where it ends, None when it stays in the gripper.
+        candidates: Indices of all objects and of all placements that fit the words.
+        passed: Words that were never heard, and words with a learned meaning that nothing in the scene has.
+        tree: The RCL tree.
+        confidence: Share of the reading among all, 0..1.
+    """
+    number, graphlet = action
+    moved, place = move
+    objects, places = candidates
+    unknown, unheeded = passed
+    goal = Goal(int(percept.object_ids[moved]), None if place is None else percept.placements[place], graphlet)
+    explanation = f"understood as action_{number}: object {goal.object_id}"
+    explanation += " is kept in the gripper" if goal.position is None else f" to {metres(goal.position)}"
+    if len(objects) > 1:
+        explanation += f"; {len(objects)} objects fit the words"
+    if len(places) > 1:
+        explanation += f"; {len(places)} places fit the words"
+    if unheeded:
+        explanation += f"; nothing here fits {listed(unheeded)}"
+    if unknown:
+        explanation += f"; never heard {listed(unknown)}"
+    return Interpretation(
+        words=words,
+        understood=True,
+        goals=(goal,),
+        tree=tree,
+        explanation=explanation,
+        unknown=unknown,
+        unheeded=unheeded,
+        object_candidates=tuple(int(percept.object_ids[each]) for each in objects),
+        place_candidates=tuple(percept.placements[each] for each in places),
+        confidence=confidence,
+    )
 
 
 def listed(words: tuple[str, ...]) -> str:

@@ -10,14 +10,17 @@ from learning.grammar.clauses import CommandReading
 from learning.grammar.reading_tree import tree_of
 from learning.grammar.scene import bits
 from learning.grounding.reading_learner import LONGEST, MOST_WORDS, ReadingLearner, Readings
-from learning.interpretation.interpretation import Goal, Interpretation, listed, metres, refusal
+from learning.interpretation.interpretation import (
+    ESTABLISHED,
+    MEANINGFUL,
+    Interpretation,
+    listed,
+    refusal,
+    understanding,
+)
 from learning.knowledge import Knowledge
 from learning.percept import Percept
 
-MEANINGFUL = 0.6
-"""A word grounded in at least this share of its validations is not passed over without saying so."""
-ESTABLISHED = 3.0
-"""Validations after which that share is trusted."""
 NEGLIGIBLE = 1e-4
 """Readings with a smaller share have no say."""
 
@@ -57,33 +60,18 @@ class ReadingInterpreter:
         share: float,
         percept: Percept,
     ) -> Interpretation:
-        moved, place = move
-        position = None if place is None else percept.placements[place]
-        goal = Goal(int(percept.object_ids[moved]), position, self.knowledge.spaces.actions[reading.action])
+        number, (moved, _) = reading.action, move
         things = [thing for thing, _ in reading.moves]
         places = bits(next(places for thing, places in reading.moves if thing == moved))
-        unheeded = self._unheeded(words, reading, found.kept)
-        explanation = f"understood as action_{reading.action}: object {goal.object_id}"
-        explanation += " is kept in the gripper" if position is None else f" to {metres(position)}"
-        if len(things) > 1:
-            explanation += f"; {len(things)} objects fit the words"
-        if len(places) > 1:
-            explanation += f"; {len(places)} places fit the words"
-        if unheeded:
-            explanation += f"; nothing here fits {listed(unheeded)}"
-        if unknown:
-            explanation += f"; never heard {listed(unknown)}"
-        return Interpretation(
-            words=words,
-            understood=True,
-            goals=(goal,),
-            tree=tree_of(reading, found.kept),
-            explanation=explanation,
-            unknown=unknown,
-            unheeded=unheeded,
-            object_candidates=tuple(int(percept.object_ids[thing]) for thing in things),
-            place_candidates=tuple(percept.placements[each] for each in places),
-            confidence=share,
+        return understanding(
+            words,
+            percept,
+            (number, self.knowledge.spaces.actions[number]),
+            move,
+            (things, places),
+            (unknown, self._unheeded(words, reading, found.kept)),
+            tree_of(reading, found.kept),
+            share,
         )
 
     def _unheeded(self, words: tuple[str, ...], reading: CommandReading, kept: tuple[int, ...]) -> tuple[str, ...]:

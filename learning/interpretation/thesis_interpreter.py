@@ -7,14 +7,16 @@ from learning.grammar.chart import Chart, LexicalEntry, Reading
 from learning.grammar.scene import SceneSets, bits
 from learning.grounding.language_learner import LanguageLearner
 from learning.grounding.lexicon import lexical_entries
-from learning.interpretation.interpretation import Goal, Interpretation, listed, metres, refusal
+from learning.interpretation.interpretation import (
+    ESTABLISHED,
+    MEANINGFUL,
+    Interpretation,
+    listed,
+    refusal,
+    understanding,
+)
 from learning.knowledge import Knowledge
 from learning.percept import Percept
-
-MEANINGFUL = 0.6
-"""A word grounded in at least this share of its validations is not passed over without saying so."""
-ESTABLISHED = 3.0
-"""Validations after which that share is trusted."""
 
 
 class ThesisInterpreter:
@@ -49,31 +51,15 @@ class ThesisInterpreter:
         self, words: tuple[str, ...], unknown: tuple[str, ...], reading: Reading, share: float, percept: Percept
     ) -> Interpretation:
         moved, places = bits(reading.moved), bits(reading.places)
-        action = self.knowledge.spaces.actions[reading.action]
-        position = percept.placements[places[0]] if places else None
-        goal = Goal(int(percept.object_ids[moved[0]]), position, action)
-        unheeded = self._unheeded(words, reading)
-        explanation = f"understood as action_{reading.action}: object {goal.object_id}"
-        explanation += " is kept in the gripper" if position is None else f" to {metres(position)}"
-        if len(moved) > 1:
-            explanation += f"; {len(moved)} objects fit the words"
-        if len(places) > 1:
-            explanation += f"; {len(places)} places fit the words"
-        if unheeded:
-            explanation += f"; nothing here fits {listed(unheeded)}"
-        if unknown:
-            explanation += f"; never heard {listed(unknown)}"
-        return Interpretation(
-            words=words,
-            understood=True,
-            goals=(goal,),
-            tree=reading.item.tree(),
-            explanation=explanation,
-            unknown=unknown,
-            unheeded=unheeded,
-            object_candidates=tuple(int(percept.object_ids[i]) for i in moved),
-            place_candidates=tuple(percept.placements[m] for m in places),
-            confidence=share,
+        return understanding(
+            words,
+            percept,
+            (reading.action, self.knowledge.spaces.actions[reading.action]),
+            (moved[0], places[0] if places else None),
+            (moved, places),
+            (unknown, self._unheeded(words, reading)),
+            reading.item.tree(),
+            share,
         )
 
     def _unheeded(self, words: tuple[str, ...], reading: Reading) -> tuple[str, ...]:
