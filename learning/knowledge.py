@@ -6,7 +6,7 @@ from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
-from learning.concept_id import Concept
+from learning.concept_id import ACTION_SPACE, Concept
 from learning.concepts import ConceptSpaces
 from learning.concepts.space_set import BOARD, SpaceSet
 from learning.errors import KnowledgeError
@@ -15,9 +15,10 @@ from learning.graphs.action_graphlet import ActionGraphlet
 from learning.grounding.language_learner import LanguageLearner
 from learning.grounding.reading_learner import ReadingLearner
 from learning.grounding.table_language import TableLanguage
-from learning.knowledge_check import check_language, check_table_language
+from learning.knowledge_check import check_language, check_phrasings, check_table_language
 from learning.percept import Percept
 from learning.saved_numbers import saved_count
+from learning.saying.phrasings import Phrasings
 
 SCHEMA_VERSION = 1
 LEAST_SIGHTINGS = 20
@@ -41,6 +42,7 @@ class Knowledge:
         spaces: Visual concepts and action graphlets.
         language: Words and grammar of the board: by readings, or the thesis's way (K, Φ, Π and preferences).
         table_language: K, Φ and Π of each language heard at tables.
+        phrasings: How each language is spoken: names of concepts, and words that stand between them.
         demos: Demos seen.
         sentences: Sentences heard.
         seen: Sightings of each shape concept.
@@ -60,6 +62,7 @@ class Knowledge:
         self.spaces = ConceptSpaces(spaces)
         self.language: Language = _language(method)()
         self.table_language = TableLanguage()
+        self.phrasings = Phrasings()
         self.demos = 0
         self.sentences = 0
         self.seen: defaultdict[int, float] = defaultdict(float)
@@ -104,16 +107,26 @@ class Knowledge:
 
     def follow_aliases(self) -> None:
         """Rename concepts that were merged into older ones wherever language speaks of them."""
-        for space, mixture in self.spaces.mixtures.items():
-            for number in range(mixture.numbers_given):
-                kept = mixture.resolve(number)
+        numbers = {space: range(mixture.numbers_given) for space, mixture in self.spaces.mixtures.items()}
+        numbers[ACTION_SPACE] = range(1, self.spaces.actions.numbers_given + 1)
+        for space in numbers:
+            for number in numbers[space]:
+                kept = self.spaces.resolve(space, number)
                 if kept != number and self.language.speaks_of(Concept(space, number)):
                     self.language.rename(Concept(space, number), Concept(space, kept))
                 if kept != number and self.table_language.speaks_of(Concept(space, number)):
                     self.table_language.rename(Concept(space, number), Concept(space, kept))
+                if kept != number:
+                    self.phrasings.rename(Concept(space, number), Concept(space, kept))
         for counts in (self.seen, self.bearing):
             for number in [n for n in counts if self.spaces.resolve("shape", n) != n]:
                 counts[self.spaces.resolve("shape", number)] += counts.pop(number)
+
+    def rehear(self) -> None:
+        """Learn how languages are spoken from the sentences that are still in memory."""
+        if isinstance(self.language, ReadingLearner):
+            self.phrasings.rehear_board(self.language, self.action_table(), self.bearing_shapes())
+        self.phrasings.rehear_tables(self.table_language)
 
     def to_json(self) -> dict[str, Any]:
         """Plain numbers, lists and strings."""
@@ -126,6 +139,7 @@ class Knowledge:
             "bearing": {str(n): [self.bearing[n], self.seen[n]] for n in sorted(self.seen)},
             "language": self.language.to_json(),
             "table_language": self.table_language.to_json(),
+            "phrasings": self.phrasings.to_json(),
         }
 
     @classmethod
@@ -156,6 +170,10 @@ class Knowledge:
                 field = "table_language"
                 knowledge.table_language = TableLanguage.from_json(data["table_language"])
                 check_table_language(knowledge.table_language, knowledge.spaces)
+            if "phrasings" in data:  # older files do not say how a language is spoken
+                field = "phrasings"
+                knowledge.phrasings = Phrasings.from_json(data["phrasings"])
+                check_phrasings(knowledge.phrasings, knowledge.spaces)
             field = "bearing"
             for number, (bearing, seen) in data["bearing"].items():
                 knowledge.bearing[int(number)] = saved_count(bearing, f"bearing of shape_{number}")

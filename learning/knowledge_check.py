@@ -10,6 +10,7 @@ from learning.grounding.reading_learner import ReadingLearner
 from learning.grounding.table_language import TableLanguage
 from learning.grounding.table_scene import BESIDE, MIDDLE, NAMED, SIDE_PLACES
 from learning.grounding.word_uses import HEADING_SPACE
+from learning.saying.phrasings import Phrasings
 
 ELEMENTS = frozenset(
     (
@@ -57,10 +58,21 @@ def check_table_language(language: TableLanguage, spaces: ConceptSpaces) -> None
             _check_concepts((concept,), spaces, "table language")
 
 
+def check_phrasings(phrasings: Phrasings, spaces: ConceptSpaces) -> None:
+    """Check that names are of concepts that were learned; sorts of things are the table language's own.
+
+    Raises:
+        ValueError: They are not; the message names the concept.
+    """
+    innate = {*SIDE_PLACES, MIDDLE, BESIDE}
+    named = (each for each in phrasings.concepts() if each not in innate and not each.space.startswith(NAMED))
+    _check_concepts(named, spaces, "phrasing")
+
+
 def _check_concepts(concepts: Iterable[Concept], spaces: ConceptSpaces, where: str) -> None:
     for concept in concepts:
         if concept.space == ACTION_SPACE:
-            known = 1 <= concept.number <= len(spaces.actions)
+            known = 1 <= concept.number <= spaces.actions.numbers_given
         elif concept.space in spaces.mixtures:
             known = 0 <= concept.number < spaces.mixtures[concept.space].numbers_given
         else:

@@ -94,6 +94,7 @@ class Learner:
             if observation.extent is not None:
                 return Lesson(len(words), self._study_table(observation, words))
             percept, shown = perceive(observation, spaces)
+            knowledge.follow_aliases()  # the action may have shown another one to be a variant
         except PerceptionError:
             return Lesson(0, 0, len(words))  # nothing moved: an arrangement to look at, but no action to speak of
         knowledge.count_bearing(percept)
@@ -108,10 +109,14 @@ class Learner:
         return Lesson(len(words), validated)
 
     def settle(self) -> None:
-        """Read all sentences about tables that are still in memory once more, with what is known by now."""
+        """Read all sentences about tables that are still in memory once more, with what is known by now.
+
+        How languages are spoken is learned then, of all that is in memory and was not counted before.
+        """
         language = self.knowledge.table_language
         language.refresh(self.knowledge.spaces)
         language.settle()
+        self.knowledge.rehear()
 
     def _study_table(self, observation: Observation, words: list[tuple[str, ...]]) -> int:
         """Learn action and language of a demo at a table; returns how many sentences could be read.
@@ -122,6 +127,7 @@ class Learner:
         knowledge = self.knowledge
         graphlet, measures, moved = shown_action(observation, knowledge.spaces)
         number = knowledge.spaces.actions.match_or_add(graphlet, measures)
+        knowledge.follow_aliases()  # it may have shown another action to be a variant
         knowledge.sentences += len(words)
         language = knowledge.table_language
         if knowledge.demos % REFRESHED == 0:

@@ -79,6 +79,8 @@ def _rule(action: TableAction, goal: Goal | None, world: World) -> rules.Rule:
             return "still held at the end"
         if facts.held[0] != (action == "put down"):
             return "held otherwise at the start than the action says"
+        if facts.slipped:
+            return "slipped out of the hand"
         if action == "move" and facts.moved < FARTHER:
             return f"moved {1000 * facts.moved:.0f} mm only"
         return "toppled" if facts.tilted() else reached(facts, goal, world)

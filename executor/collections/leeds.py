@@ -134,6 +134,8 @@ def _put(facts: rules.Facts, action: TableAction, shape: str) -> str:
         return "still held at the end"
     if facts.held[0] != (action == "put down"):
         return "held otherwise at the start than the action says"
+    if facts.slipped:
+        return "slipped out of the hand"
     if action == "move" and facts.moved < FARTHER:
         return f"moved {1000 * facts.moved:.0f} mm only"
     return "toppled" if shape not in ROLLING and facts.tilted() else ""

@@ -1,7 +1,6 @@
 """Driving a planned demo and recording it: what leads to its start is driven first and kept as the demo's prelude."""
 
 import json
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,7 +18,6 @@ from teleop.table_operator import LOOK_EVERY, TableOperator
 from twin import World
 from twin.state import WorldState
 
-KEEP = bool(os.environ.get("KEEP"))
 LONGEST = 40.0
 """A performance that takes longer is given up [s]."""
 

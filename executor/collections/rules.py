@@ -6,6 +6,7 @@ Heights are those of an object's underside above the table.
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from executor.collections.performance import Judge, Shown
 from robots.kinematics import rotation_matrix
@@ -31,6 +32,8 @@ DROPPED_FROM = 0.012
 """One that is dropped is at least so high when it is let go [m]."""
 PRESSED_WITH = 2.0
 """One that is pressed pushes back with this force at least [N]."""
+LAST_MOMENTS = 3
+"""States before the fingers open in which a thing is held that does not slip out of them."""
 OTHERS_MOVED = 0.015
 """Other objects may move by so much [m]."""
 UPRIGHT = 0.35
@@ -74,6 +77,11 @@ class Facts:
         """How far it was from its start at most [m]."""
         return float(np.linalg.norm(self.positions - self.positions[0], axis=1).max())
 
+    @property
+    def slipped(self) -> bool:
+        """Whether what was held had left the hand when the fingers were told to open."""
+        return slipped_out(self.held, self.closed)
+
     def trouble(self) -> str:
         """What no action allows: other objects moved along, an object off the table or not at rest at the end."""
         first, last = self.shown.states[0], self.shown.states[-1]
@@ -93,6 +101,15 @@ class Facts:
         """Whether it stands otherwise than at the start."""
         first, last = (rotation_matrix(each.orientation_xyzw)[:, 2] for each in (self.places[0], self.places[-1]))
         return bool(np.arccos(np.clip(first @ last, -1.0, 1.0)) > UPRIGHT)
+
+
+def slipped_out(held: NDArray[np.bool_], closed: NDArray[np.bool_]) -> bool:
+    """Whether what was held, (T,), had left the fingers when they were last closed, (T,).
+
+    Contacts flicker: that it was felt in one of the last moments is enough.
+    """
+    before = np.flatnonzero(closed)[-LAST_MOMENTS:]
+    return bool(held.any() and not held[before].any())
 
 
 Rule = Callable[[Facts], str]

@@ -80,8 +80,8 @@ class ConceptSpaces:
         return self.mixtures[space].classify(self.space(space).embed(values))
 
     def resolve(self, space: str, number: int) -> int:
-        """The number that a concept is known by now (see `IncrementalMixture.resolve`); actions keep theirs."""
-        return number if space == "action" else self.mixtures[space].resolve(number)
+        """The number that a concept is known by now (see `IncrementalMixture.resolve`)."""
+        return self.actions.resolve(number) if space == "action" else self.mixtures[space].resolve(number)
 
     def to_json(self) -> dict[str, Any]:
         """Plain numbers, lists and strings; `from_json` gives the same concepts back exactly."""

@@ -156,7 +156,11 @@ def _learn(
         known.update(concepts)
     try:
         graphlet, measures, _ = shown_action(demo.observation, known)
-        action = known.actions.match_or_add(graphlet, measures if learner is None else None)
+        if learner is None:
+            action = known.actions.match_or_add(graphlet, measures)
+        else:
+            found = known.actions.find(graphlet, measures)
+            action = NO_CONCEPT if found is None else found
     except PerceptionError:
         action = NO_CONCEPT
     seen.seconds.append(perf_counter() - begun)
@@ -205,7 +209,10 @@ def _rows(
     for name in order:
         space = name.partition(",")[0]
         found = gathered(space, seen.rows[name])
-        numbers = np.array(seen.actions) if space == "action" else known.mixtures[space].classify(found.values)
+        if space == "action":
+            numbers = np.array([known.actions.resolve(each) for each in seen.actions], dtype=np.int64)
+        else:
+            numbers = known.mixtures[space].classify(found.values)
         ours = cluster_scores(list(found.classes), list(numbers))
         if ours is None:
             continue

@@ -115,6 +115,16 @@ class ActionGraphlet:
         match = categorical_node_match("label", None)
         return bool(nx.is_isomorphic(self.to_networkx(), other.to_networkx(), node_match=match))
 
+    def likeness(self, other: "ActionGraphlet") -> float:
+        """Share of the longer one's states that both have in one order, wherever the object is, 0..1."""
+        mine, theirs = ([state.at(0) for state in each.states] for each in (self, other))
+        common = [0] * (len(theirs) + 1)  # of the longest common subsequence with each beginning of theirs
+        for state in mine:
+            before = common[:]
+            for index, their in enumerate(theirs, start=1):
+                common[index] = before[index - 1] + 1 if state == their else max(before[index], common[index - 1])
+        return common[-1] / max(len(mine), len(theirs))
+
     def to_json(self) -> list[list[int]]:
         """One row a state: `[closed, touching, location]`, and more where more is known (`GraphletState.to_json`)."""
         return [state.to_json() for state in self.states]

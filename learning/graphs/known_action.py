@@ -75,6 +75,11 @@ class KnownAction:
             statistics = self._variants[graphlet] = ActionStatistics(len(graphlet.states))
         statistics.update(measured)
 
+    def adopt(self, other: "KnownAction") -> None:
+        """Take over the variants of an action that turned out to be this one, seen badly."""
+        for graphlet, statistics in other._variants.items():
+            self._variants.setdefault(graphlet, statistics)
+
     def to_json(self) -> Any:
         """The graphlet's rows where nothing was measured, else `{"variants": [...]}`, the first seen first."""
         if all(statistics is None for statistics in self._variants.values()):

@@ -56,11 +56,18 @@ class Memory:
             return []
         return [self.episodes[int(index)] for index in rng.integers(len(self.episodes), size=count)]
 
+    def newest(self, count: int) -> list[Episode]:
+        """The last so many episodes that are kept, the oldest first."""
+        in_order = [*self.episodes[self._next :], *self.episodes[: self._next]]
+        return in_order[max(0, len(in_order) - count) :] if count > 0 else []
+
     def rename(self, old: Concept, new: Concept) -> None:
         """Rename a concept that was merged into another, in all that is kept."""
         for episode in self.episodes:
             episode.arrangement = episode.arrangement.renamed(old, new)
             episode.salient = tuple(new if concept == old else concept for concept in episode.salient)
             episode.grounded = tuple((word, new if c == old else c, n) for word, c, n in episode.grounded)
-            if old.space == "action" and episode.shown.action == old.number:
-                episode.shown = replace(episode.shown, action=new.number)
+            if old.space == "action" and old.number in (shown := episode.shown).parts:
+                parts = tuple(dict.fromkeys(new.number if part == old.number else part for part in shown.parts))
+                action = new.number if shown.action == old.number else shown.action
+                episode.shown = replace(shown, action=action, parts=parts)

@@ -31,7 +31,7 @@ from learning.grounding.attention import salient_meanings
 from learning.grounding.grounding import Grounding
 from learning.grounding.memory import LARGEST, Episode, Memory
 from learning.grounding.shares import shares_of
-from learning.grounding.word_uses import UseTable, passed_feature
+from learning.grounding.word_uses import UseTable, WordUses, passed_feature
 from learning.percept import ShownAction
 from learning.saved_numbers import saved_count
 
@@ -89,6 +89,10 @@ class ReadingLearner:
     def knows(self, word: str) -> bool:
         """Whether a word was ever heard."""
         return self.alignment.word_counts.get(word, 0.0) > 0
+
+    def uses_of(self, words: tuple[str, ...], actions: ActionTable) -> WordUses:
+        """How the words of a sentence may be read, by themselves."""
+        return self._uses.of(words, actions.sorts())
 
     def read(
         self,

@@ -196,8 +196,8 @@ def table_scene(
         ),
         relations={pair: concepts for pair, concepts in before.items() if concepts},
         moved=moved,
-        action=record.action,
-        parts=record.parts,
+        action=spaces.actions.resolve(record.action),
+        parts=tuple(sorted({spaces.actions.resolve(part) for part in record.parts})),
         goal=resting.at(last[moved]) if record.brought else frozenset(),
         goal_relations={other: concepts for other, concepts in after.items() if concepts},
     )

@@ -10,7 +10,7 @@ function words come out without a meaning (habituation, 4.9.4).
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -163,6 +163,15 @@ class Tongue:
         pieces, origin = self.joined.split(words)
         tree = self._chart(pieces, scene).best()
         return None if tree is None else _over_words(tree, origin)
+
+    def heard_lately(self, count: int) -> Iterator[tuple[tuple[str, ...], tuple[int, ...], RclNode | None]]:
+        """The last so many sentences in memory: pieces, the word that each belongs to, and how they are read now.
+
+        The order of memory does not matter: sentences that are read again go to its end.
+        """
+        for each in list(self._memory)[max(0, len(self._memory) - count) :] if count > 0 else ():
+            pieces, origin = self.joined.split(each.words)
+            yield pieces, origin, self._chart(pieces, each.scene).best()
 
     def name_of_thing(self, words: tuple[str, ...], space: str) -> str | None:
         """The n-gram by which a sentence tells what the thing that it is about is like, in one space of looks."""

@@ -164,17 +164,19 @@ def raised_evidence(observation: Observation) -> FloatArray:
     clearance = _clearance(observation)
     told = seen(observation)
     free = ~observation.gripper_closed | (holding_evidence(observation) < 0.0)
+    noise = track_noise(observation)
+    spread = np.maximum(noise, LEAST_CLEARANCE_NOISE)
     for index in range(clearance.shape[1]):
         column = clearance[:, index]
         resting = column[free & (told[:, index] > 0.0)]
         if len(resting) >= FIRST_FRAMES:
             column -= np.median(resting)
+            spread[index] = np.sqrt(2.0) * noise[index]  # both looks are noisy; the error of sight is gone
         else:
             ordered = np.sort(column)
             lowest, highest = float(np.median(ordered[:FIRST_FRAMES])), float(np.median(ordered[-FIRST_FRAMES:]))
             if lowest < (UNSEEN_ERROR if highest - lowest > LEAST_RISE else RESTING_ERROR):
                 column -= lowest
-    spread = np.maximum(track_noise(observation), LEAST_CLEARANCE_NOISE)
     off = np.maximum(clearance, 0.0) / spread
     resting_density = -0.5 * off**2 + np.log(2.0 / (np.sqrt(2.0 * np.pi) * spread))
     return bounded(np.log(1.0 / AIR) - resting_density) * told

@@ -17,10 +17,13 @@ def with_held_object(observation: Observation, index: int) -> Observation:
 
     While an object is held it is hidden by fingers and moves fast, and its track is at its worst. Its place in the hand
     hardly changes: the median of where it was seen there is added to the tool's place, which also brings back a track
-    that was lost on the way. It counts as seen then. An object that was never seen while held is left as it is.
+    that was lost on the way. It counts as seen then. An object that the fingers hide all the time they hold it is where
+    it was when they closed on it, if it was there; else it is left as it is.
     """
     held = felt(observation)
     seen = held if observation.visible is None else held & observation.visible[:, index]
+    if not np.any(seen):
+        seen = _closed_on(observation, index, held)
     if not np.any(seen):
         return observation
     location = observation.location.copy()
@@ -35,6 +38,16 @@ def with_held_object(observation: Observation, index: int) -> Observation:
         if height is not None:  # when the fingers close on it, it still rests as it was seen to before they hid it
             location[start:stop, index, 2] += height - location[start, index, 2]
     return replace(observation, location=location, visible=visible)
+
+
+def _closed_on(observation: Observation, index: int, held: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """First frames of the stays in the hand at which object `index`, once seen, is believed to be at the hand, (F,)."""
+    touching = touch_evidence(observation)[:, index] > 0.0
+    first = np.zeros(len(held), dtype=bool)
+    for start, _ in _runs(held):
+        once = observation.visible is None or bool(np.any(observation.visible[:start, index]))
+        first[start] = once and touching[start]
+    return first
 
 
 def _runs(held: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -19,6 +19,7 @@ from executor.collections import (
 )
 from executor.collections.driven_grasps import moved
 from executor.collections.rehearsal import Rehearsal
+from executor.collections.rules import slipped_out
 from executor.demo_summary import summarise
 from teleop import check_replay, load_demo
 from teleop.strokes import Reach
@@ -77,6 +78,17 @@ def test_failed_tries_are_counted_and_never_kept(tmp_path: Path) -> None:
     assert (made.failures, made.drawn, made.done) == (("dropped", "dropped"), 4, True)
     assert read_truth(made.path)["failed_tries"] == ["dropped", "dropped"]
     assert sorted(each.name for each in tmp_path.iterdir()) == ["clumsy_0_0003.mcap", "clumsy_0_0003.truth.json"]
+
+
+def test_what_falls_out_of_the_closed_hand_has_slipped_and_what_flickers_has_not() -> None:
+    closed = np.array([True] * 8 + [False] * 4)
+    carried = np.array([True] * 8 + [False] * 4)
+    assert not slipped_out(carried, closed)
+    flickering = carried & (np.arange(12) != 7)
+    assert not slipped_out(flickering, closed)
+    fallen = carried & (np.arange(12) < 4)
+    assert slipped_out(fallen, closed)
+    assert not slipped_out(np.zeros(12, dtype=bool), closed)
 
 
 def test_a_rehearsal_says_why_a_way_cannot_be_driven() -> None:

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from learning.graphs import ActionGraphlet, ActionLibrary, GraphletState, Side
+from learning.graphs.action_library import PATIENCE
 from learning.graphs.action_statistics import ActionStatistics
 
 values = st.lists(st.lists(st.floats(-5, 5), min_size=3, max_size=3), min_size=1, max_size=12)
@@ -112,6 +113,32 @@ def test_how_a_demo_begins_and_ends_is_no_flicker() -> None:
     assert library.match_or_add(LOWER, measures(0.2, 1)) == 1
 
 
+def test_what_stays_rare_becomes_a_variant_of_what_it_is_like() -> None:
+    library = ActionLibrary()
+    seen_badly = ActionGraphlet((*LOWER.states, GraphletState(True, False, 1)))
+    for _ in range(3):
+        library.match_or_add(LOWER, measures(1, 1))
+    assert library.match_or_add(seen_badly, measures(1, 1, 2)) == 2
+    assert library.match_or_add(PUSH, measures(1, 1, 1, 1)) == 3  # like none of them: it stays, however rare
+    for _ in range(PATIENCE - 2):
+        library.match_or_add(LOWER, measures(1, 1))
+    assert len(library) == 3
+    library.match_or_add(LOWER, measures(1, 1))
+    assert (len(library), library.resolve(2), list(library.numbered)) == (2, 1, [1, 3])
+    assert library.find(seen_badly, measures(1, 1, 2)) == 1
+    assert library[1] == library[2] == LOWER
+    again = ActionLibrary.from_json(json.loads(json.dumps(library.to_json())))
+    assert again.to_json() == library.to_json() and again.resolve(2) == 1
+
+
+def test_what_is_shown_again_and_again_stays_an_action_of_its_own() -> None:
+    library = ActionLibrary()
+    longer = ActionGraphlet((*LOWER.states, GraphletState(True, False, 1)))
+    for number in range(4 * PATIENCE):
+        library.match_or_add(LOWER if number % (PATIENCE // 2) else longer, measures(1, 1, *[2] * (number % 30 == 0)))
+    assert len(library) == 2
+
+
 def test_without_measures_graphlets_must_match() -> None:
     library = ActionLibrary([PUSH])
     assert library.find(LOST) is None and library.find(PUSH) == 1
@@ -125,7 +152,7 @@ def test_the_library_is_saved_with_its_statistics() -> None:
     again = ActionLibrary.from_json(json.loads(json.dumps(library.to_json())))
     assert again.to_json() == library.to_json()
     assert again.numbered == library.numbered and again.variants(2) == library.variants(2)
-    assert library.to_json()[0] == MOVE.to_json()  # as before there were statistics
+    assert library.to_json()["known"][0] == MOVE.to_json()  # as before there were statistics
 
 
 def test_a_library_of_before_statistics_loads() -> None:

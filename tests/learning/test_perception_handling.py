@@ -194,6 +194,36 @@ def test_what_was_never_seen_in_the_hand_stays_where_it_was_believed_to_be() -> 
     assert with_held_object(hidden, handled) is hidden
 
 
+def test_what_the_fingers_hide_from_the_moment_they_close_rises_with_them() -> None:
+    noisy, handled = table_demo(np.random.default_rng(6), "pick up", 1)
+    closing = int(np.flatnonzero(felt(noisy))[0])
+    visible = np.ones(noisy.location.shape[:2], dtype=bool)
+    visible[closing:, handled] = False
+    location = noisy.location.copy()
+    location[closing:, handled] = location[closing - 1, handled]  # believed to be where it was last seen
+    tied = with_held_object(replace(noisy, visible=visible, location=location), handled)
+    rise = noisy.gripper_location[-1, 2] - noisy.gripper_location[closing, 2]
+    assert rise > 0.05
+    assert tied.location[-1, handled, 2] - tied.location[closing, handled, 2] == pytest.approx(rise, abs=1e-9)
+    assert np.median(raised_evidence(tied)[-3:, handled]) > 2.0
+
+
+def test_a_fall_of_two_centimetres_when_the_fingers_open_is_told_from_none() -> None:
+    frames = 20
+    closed = np.arange(frames) < 8
+    for fall, raised in ((0.022, True), (0.008, False)):  # of looks that are 4 mm noisy each
+        height = np.where(closed, 0.05 + fall, 0.05)
+        location = np.stack([np.full(frames, 0.5), np.zeros(frames), height], axis=1)[:, None]
+        dropped = one_box(
+            [[0.5, 0.0, 0.08]],
+            frames=frames,
+            location=location,
+            gripper_closed=closed,
+            gripper_opening=np.where(closed, 0.04, 0.08),
+        )
+        assert np.all((raised_evidence(dropped)[:8, 0] > 0.0) == raised)
+
+
 @pytest.mark.parametrize("together", [True, False])
 def test_closed_fingers_that_feel_no_gap_hold_what_rises_with_them(together: bool) -> None:
     frames, rise = 20, np.linspace(0.0, 0.12, 20)

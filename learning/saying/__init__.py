@@ -1,0 +1,1 @@
+"""Saying: sentences for what is seen, in the words and the grammar that were learned."""
