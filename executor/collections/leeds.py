@@ -6,11 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from executor.collections import rules
-from executor.collections.attempt import Attempt
-from executor.collections.performance import Judge, Shown, perform
-from executor.collections.table_goals import Goal, reached
+from executor.collections.attempt import Attempt, Trying
+from executor.collections.table_goals import Goal, put_rule
 from executor.collections.table_plans import planned
-from executor.collections.truths import objects_of
 from teleop.annotators import TableAction, TableFacts, Thing, tell_table
 from twin import World
 from twin.objects import CATALOGUES
@@ -25,14 +23,10 @@ LEEDS_COUNT = TIMES * len(OBJECTS)
 """204 demos."""
 SENTENCES = 5
 """Sentences with a demo in each language; every 51st has one more, 1,024 in all."""
-ROLLING = ("apple", "pear", "banana", "marker", "cylinder")
-"""What may roll when it is let go."""
 PLACES = tuple((x, y) for x in (0.53, 0.77) for y in (0.25, 0.0, -0.25))
 """Where things stand: canonical places of the table, as people lay a table for a demonstration (thesis 3.3.2) [m],"""
 ABOUT = 0.025
 """so near to them [m]."""
-FARTHER = 0.06
-"""What was moved is so far from where it was, at least [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,23 +71,9 @@ class LeedsCollection:
                 for index, language in enumerate(self.languages)
                 for each in tell_table(facts, count, language, np.random.default_rng([self.seed, number, 7, index]))
             ]
-            spoken = [(each.text, each.language) for each in told]
-            judge = _judge(world, action, target, plan.goal)
-            reason = perform(world, plan.demo, judge, path, lambda _: spoken, rng)
-            if reason:
-                return Attempt(action, reason, simulated=world.time)
-            truth = {
-                "collection": "leeds",
-                "action": action,
-                "number": number,
-                "attempt": attempt,
-                "arm": plan.demo.arm,
-                "target": target,
-                "destination": _destination(plan.goal, world.state(), target),
-                "objects": objects_of(scene),
-                "sentences": [each.truth() for each in told],
-            }
-            return Attempt(action, "", truth, world.time)
+            trying = Trying(self.name, action, number, attempt, path)
+            rule = put_rule(world, action, target, plan.goal)
+            return trying.perform(world, plan.demo, rule, told, rng, lambda end: _destination(plan.goal, end, target))
 
 
 def _scene(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:
@@ -110,35 +90,6 @@ def _facts(scene: SceneSpec, action: TableAction, target: int, goal: Goal | None
     )
     mine = next(each for each in things if each.id == target)
     return TableFacts(action, mine, things, None if goal is None else goal.destination, action == "put down")
-
-
-def _judge(world: World, action: TableAction, target: int, goal: Goal | None) -> Judge:
-    model = world.model_of(target)
-
-    def rule(facts: rules.Facts) -> str:
-        if goal is None:
-            return rules.picked_up(facts)
-        return _put(facts, action, model.shape) or reached(facts, goal, world)
-
-    judge = rules.judge_of(rule, model)
-
-    def judged(shown: Shown) -> str:
-        return judge(shown)
-
-    return judged
-
-
-def _put(facts: rules.Facts, action: TableAction, shape: str) -> str:
-    """Whether a thing was put down as the action says."""
-    if facts.held[-1]:
-        return "still held at the end"
-    if facts.held[0] != (action == "put down"):
-        return "held otherwise at the start than the action says"
-    if facts.slipped:
-        return "slipped out of the hand"
-    if action == "move" and facts.moved < FARTHER:
-        return f"moved {1000 * facts.moved:.0f} mm only"
-    return "toppled" if shape not in ROLLING and facts.tilted() else ""
 
 
 def _destination(goal: Goal | None, end: WorldState, target: int) -> dict[str, object] | None:

@@ -6,10 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from executor.collections import rules
-from executor.collections.attempt import Attempt
+from executor.collections.attempt import Attempt, Trying
 from executor.collections.ordering_plans import ACTIONS, OrderingAction, planned
-from executor.collections.performance import perform
-from executor.collections.truths import objects_of
 from robots.errors import ShowtellError
 from teleop.annotators import OrderingFacts, tell_ordering
 from twin import World
@@ -75,29 +73,12 @@ class OrderingCollection:
             plan = planned(world, action, rng)
             if plan is None:
                 return Attempt(action, "out of reach")
-            target = plan.target
             facts = OrderingFacts.of_model(action, thing)
             told = [
                 tell_ordering(facts, language, np.random.default_rng([self.seed, number, 7, index]))
                 for index, language in enumerate(self.languages)
             ]
-            judge = rules.judge_of(RULES[action], world.model_of(target))
-            spoken = [(each.text, each.language) for each in told]
-            reason = perform(world, plan, judge, path, lambda _: spoken, rng)
-            if reason:
-                return Attempt(action, reason, simulated=world.time)
-            truth = {
-                "collection": "ordering",
-                "action": action,
-                "number": number,
-                "attempt": attempt,
-                "arm": plan.arm,
-                "target": target,
-                "destination": None,
-                "objects": objects_of(world.spec),
-                "sentences": [each.truth() for each in told],
-            }
-            return Attempt(action, "", truth, world.time)
+            return Trying(self.name, action, number, attempt, path).perform(world, plan, RULES[action], told, rng)
 
 
 def _scene(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:

@@ -34,6 +34,8 @@ PRESSED_WITH = 2.0
 """One that is pressed pushes back with this force at least [N]."""
 LAST_MOMENTS = 3
 """States before the fingers open in which a thing is held that does not slip out of them."""
+FARTHER = 0.06
+"""What was moved is so far from where it was, at least [m]."""
 OTHERS_MOVED = 0.015
 """Other objects may move by so much [m]."""
 UPRIGHT = 0.35
@@ -188,6 +190,25 @@ def pushed(facts: Facts) -> str:
     if facts.heights.max() > PUSHED_UP or facts.tilted():
         return "toppled or lifted"
     return "" if facts.moved >= PUSHED else f"moved {1000 * facts.moved:.0f} mm only"
+
+
+def set_down(facts: Facts, *, brought: bool, may_roll: bool) -> str:
+    """Held at the start or taken first, carried, and let go so that it stands.
+
+    Args:
+        facts: What was shown.
+        brought: Whether it was free at the start, and has to come a way along the table.
+        may_roll: Whether it may lie otherwise than before.
+    """
+    if facts.held[-1]:
+        return "still held at the end"
+    if facts.held[0] == brought:
+        return "held otherwise at the start than the action says"
+    if facts.slipped:
+        return "slipped out of the hand"
+    if brought and facts.moved < FARTHER:
+        return f"moved {1000 * facts.moved:.0f} mm only"
+    return "toppled" if not may_roll and facts.tilted() else ""
 
 
 def picked_up(facts: Facts) -> str:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from executor.collections.driven_grasps import pose_of
-from executor.collections.rules import Facts
+from executor.collections.rules import Facts, Rule, picked_up, set_down
 from robots.pose import FloatArray
-from teleop.annotators import Column, Destination, Place, Relation, Row, place_at
+from teleop.annotators import Column, Destination, Place, Relation, Row, TableAction, place_at
 from twin import World
 from twin.objects.overlap import footprint_depth
 from twin.scene_spec import ObjectSpec
@@ -36,6 +36,8 @@ SMALL = ("cube", "cylinder", "apple", "pear", "tape")
 FLAT = ("cube", "cylinder", "tape")
 """and what stands on another thing."""
 HOLLOW = ("bowl", "mug")
+ROLLING = ("apple", "pear", "banana", "marker", "cylinder")
+"""What may roll when it is let go."""
 LEVEL = ("cube", "tape", "stapler")
 """What has a level top."""
 MOUTH = 0.6
@@ -79,6 +81,14 @@ def goals(world: World, target: int, rng: np.random.Generator) -> Iterator[Goal]
         kinds = [kind for kind in kinds if kind]
         if goal.falls or goal.destination.relation == "on" or _free(world, thing, others, goal):
             yield goal
+
+
+def put_rule(world: World, action: TableAction, target: int, goal: Goal | None) -> Rule:
+    """When a demo of picking up, putting down or moving a thing shows what it shall; picking up has no goal."""
+    if goal is None:
+        return picked_up
+    rolls = world.model_of(target).shape in ROLLING
+    return lambda facts: set_down(facts, brought=action == "move", may_roll=rolls) or reached(facts, goal, world)
 
 
 def reached(facts: Facts, goal: Goal, world: World) -> str:

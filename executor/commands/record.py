@@ -25,6 +25,7 @@ class Collection(StrEnum):
     BOARD = "board"
     LEEDS = "leeds"
     ORDERING = "ordering"
+    COUNTER = "counter"
 
 
 def record(
@@ -37,7 +38,10 @@ def record(
     ] = None,
     collection: Annotated[
         Collection,
-        typer.Option(help="Which scenes and tasks: board; leeds (Baxter, 204 demos); ordering (Mico, 1,120 demos)."),
+        typer.Option(
+            help="Which scenes and tasks: board; leeds (Baxter, 204 demos); ordering (Mico, 1,120 demos); counter (a "
+            "Mico picks up, puts down and moves, 96 demos without sentences, for actions)."
+        ),
     ] = Collection.BOARD,
     languages: Annotated[
         str, typer.Option(help="Languages of the sentences of leeds and ordering: en, ar, or en,ar.")

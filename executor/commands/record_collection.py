@@ -1,4 +1,4 @@
-"""`showtell record --collection leeds / ordering`: a whole collection, or as many demos of it as are wanted."""
+"""`showtell record --collection leeds / ordering / counter`: a whole collection, or as many of its demos as wanted."""
 
 from collections import Counter
 from pathlib import Path
@@ -49,7 +49,14 @@ def _collection(
     name: str, folder: Path, languages: str, robot: str | None, seed: int
 ) -> tuple["ScriptedCollection", int]:
     """The collection, and how many demos it has."""
-    from executor.collections import LEEDS_COUNT, ORDERING_COUNT, LeedsCollection, OrderingCollection
+    from executor.collections import (
+        COUNTER_COUNT,
+        LEEDS_COUNT,
+        ORDERING_COUNT,
+        CounterCollection,
+        LeedsCollection,
+        OrderingCollection,
+    )
     from teleop.annotators import LANGUAGES
 
     if robot is not None:
@@ -60,6 +67,8 @@ def _collection(
         raise InputError(f"--languages {languages!r}: give one or several of {', '.join(LANGUAGES)}, as in en,ar")
     if name == "leeds":
         return LeedsCollection(folder, seed, tags), LEEDS_COUNT
+    if name == "counter":
+        return CounterCollection(folder, seed), COUNTER_COUNT
     return OrderingCollection(folder, seed, tags), ORDERING_COUNT
 
 

@@ -6,12 +6,9 @@ from typing import get_args
 
 import numpy as np
 
-from executor.collections import rules
-from executor.collections.attempt import Attempt
-from executor.collections.performance import perform
-from executor.collections.table_goals import Goal, reached
+from executor.collections.attempt import Attempt, Trying
+from executor.collections.table_goals import put_rule
 from executor.collections.table_plans import planned
-from executor.collections.truths import objects_of
 from teleop.annotators import TableAction
 from twin import World
 from twin.objects import CATALOGUES
@@ -19,8 +16,8 @@ from twin.ordering_scene import random_ordering
 
 ACTIONS: tuple[TableAction, ...] = get_args(TableAction)
 OBJECTS = CATALOGUES["ordering"]
-FARTHER = 0.06
-"""What was moved is so far from where it was, at least [m]."""
+COUNTER_COUNT = len(ACTIONS) * len(OBJECTS)
+"""96 demos."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,35 +51,5 @@ class CounterCollection:
             plan = planned(world, action, target, rng)
             if plan is None:
                 return Attempt(action, "out of reach")
-            judge = rules.judge_of(_rule(action, plan.goal, world), world.model_of(target))
-            reason = perform(world, plan.demo, judge, path, lambda _: [], rng)
-            if reason:
-                return Attempt(action, reason, simulated=world.time)
-            truth = {
-                "collection": self.name,
-                "action": action,
-                "number": number,
-                "attempt": attempt,
-                "arm": plan.demo.arm,
-                "target": target,
-                "objects": objects_of(world.spec),
-                "sentences": [],
-            }
-            return Attempt(action, "", truth, world.time)
-
-
-def _rule(action: TableAction, goal: Goal | None, world: World) -> rules.Rule:
-    """When a demo shows what it shall."""
-
-    def put(facts: rules.Facts, goal: Goal) -> str:
-        if facts.held[-1]:
-            return "still held at the end"
-        if facts.held[0] != (action == "put down"):
-            return "held otherwise at the start than the action says"
-        if facts.slipped:
-            return "slipped out of the hand"
-        if action == "move" and facts.moved < FARTHER:
-            return f"moved {1000 * facts.moved:.0f} mm only"
-        return "toppled" if facts.tilted() else reached(facts, goal, world)
-
-    return rules.picked_up if goal is None else lambda facts: put(facts, goal)
+            rule = put_rule(world, action, target, plan.goal)
+            return Trying(self.name, action, number, attempt, path).perform(world, plan.demo, rule, (), rng)
