@@ -12,6 +12,7 @@ from executor.commands import (
     bench,
     demo,
     demos,
+    describe,
     devices,
     do,
     evaluate,
@@ -67,6 +68,7 @@ perceive.add_to(app)
 learn.add_to(app)
 inspect.add_to(app)
 do.add_to(app)
+describe.add_to(app)
 app.add_typer(evaluate.app, name="evaluate")
 app.add_typer(bench.app, name="bench")
 devices.add_to(app)

@@ -1,21 +1,20 @@
 """`Executor`: from a sentence to a changed world, checked by looking."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from executor.doubts import doubt, heard
-from executor.errors import InputError, RefusalError
-from executor.goal_runner import GoalRunner
-from executor.report import ExecutionReport
-from executor.sight import Sight
-from learning.interpretation import Interpreter
-from learning.perception import percept_of
+from executor.errors import InputError
+from executor.execution.answer import Answer, OnAmbiguous
+from executor.execution.doer import Doer, doer_for
+from executor.execution.history import History
+from executor.execution.steps import Step, steps_of
+from executor.execution.understood import Understood
+from executor.report import ExecutionReport, joined, report_of
 
 if TYPE_CHECKING:
     from learning import Knowledge
-    from learning.interpretation import Goal
     from twin import World
 
 
@@ -26,88 +25,149 @@ class Executor:
         world: Where to do it.
         knowledge: What was learned.
         rng: Source of the noise of looking; the scene's seed decides when it is left out.
+        on_ambiguous: Whether to ask, or take the best, where several things fit the words.
+        clear: Whether what is in the way is put aside.
+
+    Attributes:
+        last: Track number of what was handled last, which the next command may refer to; None at first.
     """
 
-    def __init__(self, world: "World", knowledge: "Knowledge", rng: np.random.Generator | None = None) -> None:
+    def __init__(
+        self,
+        world: "World",
+        knowledge: "Knowledge",
+        rng: np.random.Generator | None = None,
+        *,
+        on_ambiguous: OnAmbiguous | str = OnAmbiguous.ASK,
+        clear: bool = False,
+    ) -> None:
         """Take a world and what was learned.
 
         Raises:
             InputError: The world is none that sentences are carried out in yet; says which are.
         """
-        robot, scene = world.robot, world.spec
-        if scene.kind != "board" or len(robot.joint_names) != 3:
-            raise InputError(
-                f"sentences are carried out by an arm of three joints on the board so far, not by {robot.name} in "
-                f"scene {scene.name!r}: use a board scene with the robot three_dof"
-            )
         self.world = world
         self.knowledge = knowledge
         self.rng = np.random.default_rng(world.spec.seed) if rng is None else rng
-        self._interpreter = Interpreter(knowledge)
+        self.clear = clear
+        self.on_ambiguous = _known(on_ambiguous)
+        self.history = History(world)
+        self.last: int | None = None
+        self._deeds: list[tuple[Understood, object]] = []
+        self._doer = doer_for(world, knowledge, self.rng, self.on_ambiguous)
 
-    def execute(self, sentence: str, *, plan_only: bool = False) -> ExecutionReport:
+    def execute(self, sentence: str, *, plan_only: bool = False, choice: int | None = None) -> ExecutionReport:
         """Understand a sentence in the scene as it is seen, and do what it says.
 
-        What cannot be understood or done is refused with an explanation; only a fault in the arguments raises.
+        All steps of the sentence are understood before the first motion, each in the world as it should be then, and
+        again when it comes to it, in the world as it is. What cannot be understood or done is answered with a reason;
+        only a fault in the arguments raises.
 
         Args:
             sentence: What to do.
             plan_only: Stop after the plan of the first goal; nothing moves.
+            choice: Track number of what was meant, as the answer to the question that this sentence had led to.
 
         Raises:
             InputError: The sentence holds no word.
         """
         if not any(letter.isalnum() for letter in sentence):
             raise InputError(f"the sentence {sentence!r} holds no word; say what to do")
-        runner = GoalRunner(self.world, self.rng)
-        observation = runner.look()
-        with runner.stopwatch.part("perceive"):
-            percept = percept_of(observation, self.knowledge.spaces)
-        with runner.stopwatch.part("interpret"):
-            reading = self._interpreter.interpret(sentence, percept)
-        trouble = doubt(reading, self.knowledge, percept)
-        report = ExecutionReport(
-            sentence,
-            False,
-            True,
-            _sentences(heard(reading), trouble),
-            goal=reading.goals[0] if reading.goals else None,
-            goals=reading.goals,
-            durations=runner.stopwatch.seconds,
-        )
-        if trouble or not reading.understood or not reading.goals:
-            return report
-        sight = Sight.of(observation)
-        for number, goal in enumerate(reading.goals):
+        doer = self._doer
+        doer.stopwatch.restart()
+        view = doer.look()
+        steps = steps_of(sentence, doer, view, self.last, choice)
+        trouble = next((step for step in steps if not self._can_act(step.understood)), None)
+        if trouble is not None:
+            report = report_of(trouble.understood, sentence)
+        elif plan_only:
+            report = doer.plan(steps[0].understood, view, sentence)
+        else:
+            report = self._carried_out(sentence, steps, view, choice)
+        return replace(report, durations=dict(doer.stopwatch.seconds))
+
+    @property
+    def doer(self) -> Doer[Any]:
+        """Who carries steps out in this world."""
+        return self._doer
+
+    def undo(self) -> str | None:
+        """Put the world back to before the last command that moved something.
+
+        Returns:
+            That command, or None where there is nothing to undo.
+        """
+        moment = self.history.go_back()
+        if moment is None:
+            return None
+        self.last = moment.last
+        self._doer.resume()
+        return moment.sentence
+
+    def _can_act(self, understood: Understood) -> bool:
+        return understood.clear or (self.clear and bool(understood.blocked) and understood.answer is Answer.IMPOSSIBLE)
+
+    def mark_wrong(self, knowledge: "Knowledge") -> bool:
+        """Let knowledge learn that what was done last is not what was said.
+
+        Args:
+            knowledge: Updated in place: this executor's own, or the same in another copy.
+
+        Returns:
+            Whether the words would be understood otherwise now.
+        """
+        changed = [self._doer.forget(knowledge, understood, view) for understood, view in self._deeds]
+        return any(changed)
+
+    def _carried_out(self, sentence: str, steps: list[Step], view: object, choice: int | None) -> ExecutionReport:
+        """Carry out steps, each understood anew in the world as it is."""
+        self._deeds = []
+        self.history.keep(sentence, self.last)
+        reports: list[ExecutionReport] = []
+        for number, step in enumerate(steps):
+            understood = step.understood
             if number:
-                sight = Sight.of(runner.look())
-            report = _after(report, runner, goal, sight, plan_only)
-            if not report.success or plan_only:
+                view = self._doer.look()
+                understood = self._doer.understand(step.words, view, self.last, choice)
+            said = sentence if len(steps) == 1 else " ".join(step.words)
+            if self._can_act(understood):
+                report = self._doer.carry_out(understood, view, said)
+                self.last = understood.goals[-1].object_id
+                self._deeds.append((understood, view))
+            else:
+                report = report_of(understood, said)
+            reports.append(report)
+            if not report.success:
                 break
-        return report
+        if not any(report.answer.moved for report in reports):
+            self.history.drop()
+        return reports[0] if len(steps) == 1 else _together(sentence, reports, len(steps))
 
 
-def _after(report: ExecutionReport, runner: GoalRunner, goal: "Goal", sight: Sight, plan_only: bool) -> ExecutionReport:
-    """The report, continued by what became of one more goal."""
-    report = replace(report, goal=goal)
-    try:
-        if plan_only:
-            return replace(report, plan=runner.plan(goal, sight), success=True, refused=False)
-        run = runner.carry_out(goal, sight)
-    except RefusalError as refusal:
-        return replace(report, success=False, explanation=_sentences(report.explanation, str(refusal)))
-    said = [part for part in (run.note, run.outcome.explanation if run.outcome else "") if part]
+def _together(sentence: str, reports: list[ExecutionReport], count: int) -> ExecutionReport:
+    """One report of several steps."""
+    last = reports[-1]
+    answer = last.answer
+    if not answer.moved and any(report.answer.moved for report in reports):
+        answer = Answer.FAILED  # something was done, but not all
+    done = sum(report.success for report in reports)
+    reason = f"{done} of {count} steps done" + ("" if done == count else f"; step {len(reports)}: {last.reason}")
     return replace(
-        report,
-        success=run.outcome is not None and run.outcome.right,
-        refused=False,
-        explanation=_sentences(report.explanation, *said),
-        plan=run.plan,
-        outcome=run.outcome,
-        attempts=report.attempts + run.attempts,
+        last,
+        sentence=sentence,
+        answer=answer,
+        reason=reason,
+        explanation=joined(*(report.explanation for report in reports)),
+        goals=tuple(goal for report in reports for goal in report.goals),
+        attempts=sum(report.attempts for report in reports),
+        cleared=tuple(number for report in reports for number in report.cleared),
+        steps=tuple(reports),
     )
 
 
-def _sentences(*parts: str) -> str:
-    """Join explanations with semicolons, without their full stops."""
-    return "; ".join(part.strip().rstrip(".") for part in parts if part.strip())
+def _known(on_ambiguous: OnAmbiguous | str) -> OnAmbiguous:
+    try:
+        return OnAmbiguous(on_ambiguous)
+    except ValueError:
+        allowed = ", ".join(each.value for each in OnAmbiguous)
+        raise InputError(f"on_ambiguous is {on_ambiguous!r}, allowed: {allowed}") from None

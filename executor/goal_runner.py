@@ -1,20 +1,20 @@
 """One goal carried out: look, plan, move, look again; once more if the grasp slipped."""
 
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from executor.errors import RefusalError
+from executor.errors import ExecutorError, RefusalError
+from executor.execution.stopwatch import Stopwatch
+from executor.free_places import free_place
 from executor.motion import Motion
-from executor.motion_plan import MotionPlan
-from executor.outcome import HALF_CELL, judge
-from executor.planner import plan_motion
+from executor.motion_plan import MotionPlan, MoveGripper
+from executor.outcome import HALF_CELL, agreed, judge
+from executor.planner import WAYS, Way, plan_motion
 from executor.report import Outcome
 from executor.sight import Sight
+from learning.graphs import ActionGraphlet, GraphletState
 from learning.perception import observe_world
 from twin import board
 
@@ -23,24 +23,12 @@ if TYPE_CHECKING:
     from learning.perception import Observation
     from twin import World
 
+NOTHING = -1
+"""Track number of no object."""
+PUT_DOWN = ActionGraphlet((GraphletState(True, True, 0), GraphletState(False, True, 1), GraphletState(False, False, 1)))
+"""How the hand is freed when something went wrong: innate, as nobody shows that."""
 ATTEMPTS = 2
 """How often an object is reached for: a grasp that slipped is tried once more."""
-
-
-@dataclass(slots=True)
-class Stopwatch:
-    """Wall-clock time spent on each part of the work [s]."""
-
-    seconds: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def part(self, name: str) -> Iterator[None]:
-        """Add the time that the body takes to a part."""
-        begun = time.perf_counter()
-        try:
-            yield
-        finally:
-            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begun
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,21 +61,22 @@ class GoalRunner:
         self.rng = rng
         self.motion = Motion(world)
         self.stopwatch = Stopwatch()
+        self.motion.on_start = lambda: self.stopwatch.mark_once("to_motion")
 
     def look(self) -> "Observation":
         """Observe the world as it stands now."""
         with self.stopwatch.part("perceive"):
             return observe_world(self.world.state(), self.world.spec, self.rng)
 
-    def plan(self, goal: "Goal", sight: Sight) -> MotionPlan:
-        """Plan a goal in the scene that was seen.
+    def plan(self, goal: "Goal", sight: Sight, way: Way = WAYS[0]) -> MotionPlan:
+        """Plan a goal in the scene that was seen, in one way of gripping and carrying.
 
         Raises:
             RefusalError: The goal cannot be carried out; says why.
         """
         with self.stopwatch.part("plan"):
             check_goal(goal, sight)
-            plan = plan_motion(goal.object_id, goal.position, goal.action, sight, board.BLOCK)
+            plan = plan_motion(goal.object_id, goal.position, goal.action, sight, board.BLOCK, way)
             self.motion.check_reach(plan)
         return plan
 
@@ -105,21 +94,58 @@ class GoalRunner:
         plan = self.plan(goal, sight)
         attempt = 1
         while True:
-            with self.stopwatch.part("move"):
-                begun = self.world.time
-                self.motion.run(plan)
-            simulated = self.stopwatch.seconds.get("simulated", 0.0)
-            self.stopwatch.seconds["simulated"] = simulated + self.world.time - begun
-            now = Sight.of(self.look())
-            outcome = judge(goal.object_id, goal.position, before, now)
+            self._move(plan)
+            now, outcome = self._checked(goal, before)
             if outcome.reached or attempt == ATTEMPTS:
-                return Run(plan, outcome, attempt, note)
+                break
             try:
-                plan = self.plan(goal, now)
+                plan = self.plan(goal, now, WAYS[attempt % len(WAYS)])
             except RefusalError as refusal:
-                return Run(plan, outcome, attempt, f"a second try is not possible: {refusal}")
+                note = f"a second try is not possible: {refusal}"
+                break
             attempt += 1
-            note = "the first grasp slipped, so I tried once more"
+            note = "the first grasp slipped, so I tried once more, another way"
+        if not outcome.right:
+            note = "; ".join(part for part in (note, self.come_to_rest(goal, now)) if part)
+        return Run(plan, outcome, attempt, note)
+
+    def come_to_rest(self, goal: "Goal | None", now: Sight) -> str:
+        """After something went wrong: put down what is in the gripper where there is room, or open it.
+
+        Args:
+            goal: What was tried; what should be in the gripper stays there. None lets go of anything.
+            now: The scene as it is seen.
+
+        Returns:
+            What was done, in plain words, or nothing.
+        """
+        if not now.gripper_closed or (goal is not None and goal.position is None and now.held == goal.object_id):
+            return ""
+        if now.held is None:
+            self._move(MotionPlan((MoveGripper(False, 0),), NOTHING, None))
+            return "the gripper was closed on nothing and is open again"
+        place = free_place(now, now.where(now.held), ())
+        if place is None:
+            return "there is no free place to put down what is in the gripper"
+        try:
+            plan = plan_motion(now.held, place, PUT_DOWN, now, board.BLOCK, WAYS[1])
+            self.motion.check_reach(plan)
+        except ExecutorError as error:
+            return f"what is in the gripper stays there: {error}"
+        self._move(plan)
+        return "what was in the gripper was put down at a free place"
+
+    def _move(self, plan: MotionPlan) -> None:
+        begun = self.world.time
+        with self.stopwatch.part("move"):
+            self.motion.run(plan)
+        self.stopwatch.add("simulated", self.world.time - begun)
+
+    def _checked(self, goal: "Goal", before: Sight) -> tuple[Sight, Outcome]:
+        """Look twice, and compare both looks with the goal; returns the second look too."""
+        first, second = (Sight.of(self.look()) for _ in range(2))
+        outcomes = [judge(goal.object_id, goal.position, before, now) for now in (first, second)]
+        return second, agreed(*outcomes)
 
 
 def check_goal(goal: "Goal", sight: Sight) -> None:

@@ -1,5 +1,6 @@
 """Motion on the twin: straight segments of the tool and moves of the gripper, 240 times a second."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -52,14 +53,23 @@ class Motion:
         world: The world to step.
         limits: Limits of free travel.
         precise: Limits of moves near objects.
+
+    Attributes:
+        opening: Gap that the fingers are told to make [m].
+        on_start: Called before the first step of every move.
     """
 
     def __init__(self, world: "World", limits: ToolLimits = TOOL_LIMITS, precise: ToolLimits = PRECISE) -> None:
         self.world = world
         self.limits = limits
         self.precise = precise
-        self._rate: FloatArray = np.zeros(len(world.robot.joint_names))
-        self.opening = 0.0 if world.state().gripper_closed else world.robot.gripper.max_opening
+        self.on_start: Callable[[], None] = lambda: None
+        self.resume()
+
+    def resume(self) -> None:
+        """Take over the world as it is now, at rest."""
+        self._rate: FloatArray = np.zeros(len(self.world.robot.joint_names))
+        self.opening = 0.0 if self.world.state().gripper_closed else self.world.robot.gripper.max_opening
 
     def check_reach(self, plan: MotionPlan) -> None:
         """See that every waypoint can be reached.
@@ -93,6 +103,7 @@ class Motion:
         begun = state.time
         segment = self._plan(state.q, state.pose_tool_in_world.position, target, limits or self.limits)
         steps = max(1, int(np.ceil(segment.duration / self.world.DT)))
+        self.on_start()
         q = state.q
         for index in range(1, steps + 1):
             position, velocity, _ = segment.at(index * self.world.DT)
@@ -112,6 +123,7 @@ class Motion:
         self.opening = 0.0 if closed else self.world.robot.gripper.max_opening
         still = JointCommand(np.zeros(len(self.world.robot.joint_names)), self.opening)
         window = round(GRIP_TIME[0] / self.world.DT)
+        self.on_start()
         before = np.inf
         for _ in range(round(GRIP_TIME[1] / GRIP_TIME[0])):
             for _ in range(window):

@@ -15,6 +15,7 @@ touching -> apart                           retreat upwards
 So another graphlet gives another plan: nothing here knows an action by name.
 """
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,10 +38,28 @@ RELEASE_GAP = 0.001
 """Height above its place at which an object is let go [m]; pressing it down would push the stack."""
 
 
+@dataclass(frozen=True, slots=True)
+class Way:
+    """How an object is gripped and carried, where there is a choice.
+
+    Attributes:
+        grip_above: Height of the tool above the object's centre when it closes [m].
+        clearance: Free height between what is carried and what stands below it [m].
+    """
+
+    grip_above: float = 0.0
+    clearance: float = CLEARANCE
+
+
+WAYS = (Way(), Way(grip_above=-0.005, clearance=1.8 * CLEARANCE))
+"""The usual way, and another for when that failed: the fingers reach deeper, and all is carried higher."""
+
+
 class _Planner:
     """Walks along the states of one graphlet and collects the steps."""
 
-    def __init__(self, object_id: int, goal: FloatArray | None, sight: Sight, block: float) -> None:
+    def __init__(self, object_id: int, goal: FloatArray | None, sight: Sight, block: float, way: Way) -> None:
+        self.way = way
         self.sight = sight
         self.object_id = object_id
         self.goal = goal
@@ -88,7 +107,7 @@ class _Planner:
     def _reach(self, state: "GraphletState") -> None:
         if self.closed or state.gripper_closed:
             raise RefusalError("the learned action touches a block with a closed gripper, which moves nothing surely")
-        self._move(self.object, "descend")
+        self._move(self.object + [0.0, 0.0, self.way.grip_above], "descend")
         self.touching = True
 
     def _let_go(self, state: "GraphletState") -> None:
@@ -135,11 +154,16 @@ class _Planner:
             top = max(top, float(near.max()) + self.block / 2) if len(near) else top
         if self.touching:
             top = max(top, float(self.object[2]) - self.block / 2)
-        return top + self.block / 2 + CLEARANCE
+        return top + self.block / 2 + self.way.clearance
 
 
 def plan_motion(
-    object_id: int, goal: FloatArray | None, action: "ActionGraphlet", sight: Sight, block: float
+    object_id: int,
+    goal: FloatArray | None,
+    action: "ActionGraphlet",
+    sight: Sight,
+    block: float,
+    way: Way = WAYS[0],
 ) -> MotionPlan:
     """Turn a goal into tool waypoints and gripper moves.
 
@@ -151,6 +175,7 @@ def plan_motion(
         action: The learned action graphlet to follow.
         sight: What was seen of the scene.
         block: Height of an object [m].
+        way: How it is gripped and carried.
 
     Raises:
         RefusalError: The graphlet does not start from this scene, or asks for what the arm cannot do.
@@ -165,7 +190,7 @@ def plan_motion(
     last_location = states[-1].object_location
     if goal is None and last_location != 0 and not states[-1].touching:
         raise RefusalError("the action puts a block down, and no place for it was understood")
-    planner = _Planner(object_id, goal, sight, block)
+    planner = _Planner(object_id, goal, sight, block, way)
     for index in range(first, len(states)):
         planner.follow(states[index], index, last_location)
     if not planner.steps:

@@ -1,11 +1,13 @@
 """What was learned of the languages of tables: the words of each concept in each language, and translations."""
 
+import json
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from executor.commands.output import Output
     from learning import Knowledge
     from learning.concept_id import Concept
+    from learning.grounding.table_language import TableLanguage
     from learning.grounding.tongue import Tongue
 
 WORDS = 6
@@ -52,10 +54,28 @@ def tell_table_words(out: "Output", knowledge: "Knowledge") -> None:
         if count >= 1.0
     ]
     out.table("Grammar of each language", ("script", "element", "becomes", "count"), rules)
+    out.table("Size of what is known of languages [kB]", ("part", "kB"), _sizes(language))
     found = translations(language)
     if found:
         pairs = [(each.ngram, each.other, str(each.concept)) for each in found if each.script == scripts[0]]
         out.table("Translations", (scripts[0].lower(), "is", "both mean"), pairs)
+
+
+def main_words(tongue: "Tongue") -> "dict[Concept, str]":
+    """The most frequent word of each concept in one language."""
+    return {concept: entries[0][0] for concept, entries in _meanings(tongue).items()}
+
+
+def _sizes(language: "TableLanguage") -> list[tuple[str, str]]:
+    """Parts of the table language as they are saved, and how much room each takes [kB]."""
+    data = language.to_json()
+    tongues = data.pop("tongues")
+    parts = {
+        **data,
+        **{f"{script.lower()}: {name}": part for script, row in tongues.items() for name, part in row.items()},
+    }
+    sizes = {name: len(json.dumps(part, ensure_ascii=False).encode()) for name, part in parts.items()}
+    return [(name, f"{size / 1000:.1f}") for name, size in (*sizes.items(), ("all", sum(sizes.values())))]
 
 
 def _meanings(tongue: "Tongue") -> "dict[Concept, list[tuple[str, float, float]]]":

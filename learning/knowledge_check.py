@@ -5,10 +5,11 @@ from collections.abc import Iterable
 from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, REFERENCE_SPACE, RELATION_SPACES, Concept
 from learning.concepts import ConceptSpaces
 from learning.grammar.innate import INNATE
+from learning.grounding.kind_sizes import LARGER, SMALLER
 from learning.grounding.language_learner import LanguageLearner
 from learning.grounding.reading_learner import ReadingLearner
 from learning.grounding.table_language import TableLanguage
-from learning.grounding.table_scene import BESIDE, MIDDLE, NAMED, SIDE_PLACES
+from learning.grounding.table_scene import BESIDE, MIDDLE, NAMED, OVER, SIDE_PLACES
 from learning.grounding.word_uses import HEADING_SPACE
 from learning.saying.phrasings import Phrasings
 
@@ -19,6 +20,8 @@ ELEMENTS = frozenset(
     )
 )
 """All RCL elements (thesis table 5.1) and feature spaces that a rule of the grammar may name."""
+INNATE_AT_TABLES = frozenset((*SIDE_PLACES, MIDDLE, BESIDE, OVER, SMALLER, LARGER))
+"""Concepts of tables that nobody has to learn."""
 
 
 def check_language(language: LanguageLearner | ReadingLearner, spaces: ConceptSpaces) -> None:
@@ -48,8 +51,7 @@ def check_table_language(language: TableLanguage, spaces: ConceptSpaces) -> None
     Raises:
         ValueError: They do; the message names the concept.
     """
-    innate = {*SIDE_PLACES, MIDDLE, BESIDE}
-    for concept in sorted(language.concepts() - innate):
+    for concept in sorted(language.concepts() - INNATE_AT_TABLES):
         if concept.space.startswith(NAMED):
             sorts = language.sorts.get(concept.space.removeprefix(NAMED))
             if sorts is None or not 0 <= concept.number < len(sorts.kinds):
@@ -64,8 +66,7 @@ def check_phrasings(phrasings: Phrasings, spaces: ConceptSpaces) -> None:
     Raises:
         ValueError: They are not; the message names the concept.
     """
-    innate = {*SIDE_PLACES, MIDDLE, BESIDE}
-    named = (each for each in phrasings.concepts() if each not in innate and not each.space.startswith(NAMED))
+    named = (each for each in phrasings.concepts() if each not in INNATE_AT_TABLES and not each.space.startswith(NAMED))
     _check_concepts(named, spaces, "phrasing")
 
 

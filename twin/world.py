@@ -3,7 +3,7 @@
 import itertools
 import math
 import weakref
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -80,6 +80,7 @@ class World:
         spec: The scene as it was specified.
         robot: The robot, where the scene starts; `placed_robot` knows where a robot on wheels is now.
         ground: What stands still.
+        on_step: Called before every step, with nothing moved yet by it; None for nothing.
     """
 
     DT: ClassVar[float] = 1.0 / 240.0
@@ -100,6 +101,7 @@ class World:
         self.robot: RobotModel = beside_board(robot) if spec.kind == "board" else robot
         self.ground: Ground = _ground(spec, self.robot)
         posture, tool = _start(spec, self.robot)
+        self.on_step: Callable[[], None] | None = None
         self._number = next(_numbers)
         self._state: WorldState | None = None
         self._physics = Physics(self.DT, SOLVER_ITERATIONS, window=window)
@@ -222,6 +224,8 @@ class World:
             raise TwinError(
                 f"a command needs {len(self.robot.joint_names)} finite joint velocities [rad/s], got {velocity}"
             )
+        if self.on_step is not None:
+            self.on_step()
         self._robot.command(velocity, self._openings(command), self._base_twist(command), self.DT)
         self._advance()
         self._steps += 1

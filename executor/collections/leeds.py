@@ -58,13 +58,13 @@ class LeedsCollection:
         """Try to record a demo."""
         action, thing = self.shows(number)
         rng = np.random.default_rng([self.seed, number, attempt])
-        scene = _scene(rng, thing, self.seed)
+        scene = scene_with(rng, thing, self.seed)
         target = next(each.id for each in scene.objects if each.model == thing)
         with World(scene) as world:
             plan = planned(world, action, target, rng)
             if plan is None:
                 return Attempt(action, "out of reach")
-            facts = _facts(scene, action, target, plan.goal)
+            facts = facts_of(scene, action, target, plan.goal)
             count = SENTENCES + (number % len(OBJECTS) == 0)
             told = [
                 each
@@ -76,7 +76,7 @@ class LeedsCollection:
             return trying.perform(world, plan.demo, rule, told, rng, lambda end: _destination(plan.goal, end, target))
 
 
-def _scene(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:
+def scene_with(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:
     """A random scene with an object among others; which number it has says nothing."""
     scene = random_tabletop(rng, seed=seed, including=thing, places=PLACES, about=ABOUT)
     order = rng.permutation(len(scene.objects)).tolist()
@@ -84,7 +84,8 @@ def _scene(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:
     return scene.model_copy(update={"objects": objects})
 
 
-def _facts(scene: SceneSpec, action: TableAction, target: int, goal: Goal | None) -> TableFacts:
+def facts_of(scene: SceneSpec, action: TableAction, target: int, goal: Goal | None) -> TableFacts:
+    """What there is to say of a demo."""
     things = tuple(
         Thing(each.id, each.shape, each.colour, each.position[0], each.position[1]) for each in scene.objects
     )

@@ -66,7 +66,7 @@ class OrderingCollection:
         action, thing = self.shows(number)
         rng = np.random.default_rng([self.seed, number, attempt])
         try:
-            world = World(_scene(rng, thing, self.seed))
+            world = World(scene_with(rng, thing, self.seed))
         except ShowtellError as error:  # the hand cannot start there
             return Attempt(action, str(error))
         with world:
@@ -81,7 +81,7 @@ class OrderingCollection:
             return Trying(self.name, action, number, attempt, path).perform(world, plan, RULES[action], told, rng)
 
 
-def _scene(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:
+def scene_with(rng: np.random.Generator, thing: str, seed: int) -> SceneSpec:
     """A random scene with an object, and the hand somewhere before it."""
     scene = random_ordering(rng, seed=seed, including=thing)
     x, y, z = (START + rng.uniform(-1.0, 1.0, 3) * START_ROOM).tolist()

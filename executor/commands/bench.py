@@ -153,6 +153,32 @@ def servo(
 
 
 @app.command()
+def parse(
+    count: Annotated[int, typer.Option("--sentences", min=1, help="Sentences to parse.")] = 100,
+    knowledge: Annotated[
+        Path | None, typer.Option(help="Knowledge whose grammar is used; learned here without it.")
+    ] = None,
+    train_robots: Annotated[
+        Path | None, typer.Option(help="Release whose commands are parsed, and learned from without --knowledge.")
+    ] = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+) -> None:
+    """Our Viterbi CKY and NLTK's, with the same learned grammar and sentences. Exit code 1 if a probability differs.
+
+    Example: showtell bench parse --knowledge knowledge.json --train-robots train-robots/
+    """
+    from executor.bench import parse as part
+
+    out = Output(as_json)
+    with out.progress("parsing", count) as advance:
+        report = part.run(seed, count, knowledge, train_robots, advance)
+    _tell(out, "Parsing", report, seed)
+    if report.figures["same_probability"] != 1.0:
+        raise typer.Exit(FAILED)
+
+
+@app.command()
 def recorder(
     kills: Annotated[int, typer.Option(min=1, help="Recordings that are killed at random moments.")] = 50,
     demos: Annotated[int, typer.Option(min=1, help="Scripted demos that are replayed.")] = 100,

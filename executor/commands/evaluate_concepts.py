@@ -115,6 +115,9 @@ def tell(out: Output, report: "ConceptsReport") -> None:
         )
         for row in report.rows
     ]
+    for row in report.rows:
+        if row.unmeasured:
+            out.say(f"{row.name} was never measured of {row.unmeasured} objects: they are scored for nobody")
     number = thesis.table if thesis else "6.3"
     columns = ("feature", "instances", "MI", "NMI", "homogeneity", "completeness", "V-measure")
     out.table(f"Concepts of {report.robot}: ours (thesis table {number})", columns, metrics)

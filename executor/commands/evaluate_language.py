@@ -138,6 +138,16 @@ def _tell_grounding(out: Output, report: "LanguageReport") -> None:
         rows.append((space, _figure(figures.get(f"f1.{space}")), _figure(baselines.get(f"hmm.{space}")), *published))
     columns = ("feature", "ours", "HMM (supervised)", "thesis, own data", "its HMM")
     out.table(f"F1 of grounding, {report.robot} (thesis table 6.7)", columns, rows)
+    by_use = spaces_in(figures, "f1_by_use")
+    if by_use:
+        out.table(
+            "The same with each pair counted as often as it is used",
+            ("feature", "ours", "HMM (supervised)"),
+            [
+                (space, _figure(figures[f"f1_by_use.{space}"]), _figure(baselines.get(f"hmm_by_use.{space}")))
+                for space in by_use
+            ],
+        )
     languages = sorted({name.split(".")[2] for name in figures if name.count(".") == 2 and name.startswith("f1.")})
     if len(languages) > 1:
         heads = [f"{who} {language}" for language in languages for who in ("ours", "HMM")]

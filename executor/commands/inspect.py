@@ -8,26 +8,34 @@ import typer
 from executor.commands.output import FAILED, Json, Output, Seed
 
 if TYPE_CHECKING:
+    from executor.explanation import Explanation
     from learning import Knowledge
 
 
 def inspect(
     knowledge: Annotated[Path, typer.Argument(help="Knowledge file that `showtell learn` wrote.")],
     sentence: Annotated[str | None, typer.Argument(help="A sentence to understand.")] = None,
-    scene: Annotated[str, typer.Option(help="Scene for the sentence: `board` or a TOML file.")] = "board",
+    scene: Annotated[
+        str | None,
+        typer.Option(
+            help="Scene for the sentence: `board`, `tabletop`, `ordering` or a TOML file (`board` or `tabletop`)."
+        ),
+    ] = None,
+    robot: Annotated[str | None, typer.Option(help="Robot to use instead of the scene's own.")] = None,
     rules: Annotated[int, typer.Option(min=0, help="How many grammar rules to list.")] = 25,
     everything: Annotated[bool, typer.Option("--all", help="List concepts that no word means, too.")] = False,
     html: Annotated[Path | None, typer.Option(help="Write what was learned as one HTML page, with drawings.")] = None,
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
-    """Show what was learned as tables or as a page, or the tree by which a sentence is understood in a scene.
+    """Show what was learned as tables or as a page, or how a sentence is understood in a scene and why so.
 
     Example: showtell inspect knowledge.json "put the red cube on the blue cube" --seed 7
 
     Example: showtell inspect knowledge.json --html knowledge.html
     """
     from learning import Knowledge
+    from learning.concepts.space_set import BOARD
 
     out = Output(as_json)
     learned = Knowledge.load(knowledge)
@@ -36,7 +44,8 @@ def inspect(
     if sentence is None:
         tell_knowledge(out, learned, rules, everything)
     else:
-        _understand(out, learned, sentence, scene, seed)
+        usual = "board" if learned.spaces.space_set.name == BOARD.name else "tabletop"
+        _understand(out, learned, sentence, scene or usual, robot, seed)
 
 
 def tell_knowledge(out: Output, knowledge: "Knowledge", rules: int, everything: bool = False) -> None:
@@ -126,38 +135,53 @@ def _write_page(out: Output, learned: "Knowledge", html: Path, source: str) -> N
     out.say(f"wrote {html}")
 
 
-def _understand(out: Output, knowledge: "Knowledge", sentence: str, scene: str, seed: int) -> None:
-    """Print how a sentence is understood in a scene."""
-    import numpy as np
+def _understand(out: Output, knowledge: "Knowledge", sentence: str, scene: str, robot: str | None, seed: int) -> None:
+    """Print how a sentence is understood in a scene, and why so."""
+    from dataclasses import asdict
 
+    from executor.commands.describe import seen_in_scene
     from executor.errors import InputError
+    from executor.explain_board import explain_board, explain_plainly
+    from executor.explain_table import explain_table
     from learning import Interpreter
-    from learning.perception import observe_world, percept_of
-    from twin import World
+    from learning.concepts.space_set import BOARD
+    from learning.grounding.reading_learner import ReadingLearner
+    from learning.perception import percept_of
 
     if not sentence.split():
         raise InputError("the sentence is empty; leave it out to see what was learned")
-    rng = np.random.default_rng(seed)
-    with World.from_scene(scene, seed=seed) as world:
-        percept = percept_of(observe_world(world.state(), world.spec, rng), knowledge.spaces)
-    reading = Interpreter(knowledge).interpret(sentence, percept)
-    if reading.tree is not None:
-        out.say(reading.tree.draw(reading.words))
-    out.say(reading.explanation)
-    out.result(
-        {
-            "sentence": sentence,
-            "understood": reading.understood,
-            "explanation": reading.explanation,
-            "tree": reading.tree.draw(reading.words) if reading.tree else None,
-            "unknown": list(reading.unknown),
-            "confidence": reading.confidence,
-            "seed": seed,
-            "scene": scene,
-        }
-    )
-    if not reading.understood:
+    seen = seen_in_scene(knowledge, scene, robot, seed)
+    if knowledge.spaces.space_set.name != BOARD.name:
+        told = explain_table(knowledge, sentence, seen)
+    else:
+        percept = percept_of(seen, knowledge.spaces)
+        if isinstance(knowledge.language, ReadingLearner):
+            told = explain_board(knowledge, knowledge.language, sentence, percept)
+        else:
+            told = explain_plainly(Interpreter(knowledge).interpret(sentence, percept))
+    _tell_explanation(out, told)
+    out.result({"sentence": sentence, **asdict(told), "explanation": told.summary, "seed": seed, "scene": scene})
+    if not told.understood:
         raise typer.Exit(FAILED)
+
+
+def _tell_explanation(out: Output, told: "Explanation") -> None:
+    rows = [(row.word, row.meant or "passed over", row.usual) for row in told.words]
+    out.table("Words", ("word", "means here", "usually (share of its readings)"), rows)
+    if told.tree is not None:
+        out.say(told.tree)
+    referents = [(each.words, each.what, each.found) for each in told.referents]
+    if referents:
+        out.table("What its parts are about", ("words", "as", "in this scene"), referents)
+    if told.alternatives:
+        others = [(each.tree, each.does, f"{each.share:.3f}", each.why) for each in told.alternatives]
+        out.table("What else it could mean", ("reading", "would be about", "share", "why it lost"), others)
+    for note in told.notes:
+        out.say(note)
+    if told.plain is not None:
+        out.say(f"by words and grammar alone, without the scene: {told.plain}")
+    share = "" if told.confidence is None else f" (share of all readings {told.confidence:.2f})"
+    out.say(f"{told.summary}{share}")
 
 
 def add_to(app: typer.Typer) -> None:

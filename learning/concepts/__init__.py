@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from learning.concepts.gaussian import Gaussian
     from learning.concepts.incremental_mixture import IncrementalMixture
     from learning.concepts.mixture import Mixture
+    from learning.concepts.mode_mixture import ModeMixture
     from learning.concepts.space_set import BOARD, COUNTER, TABLE, SpaceSet, find_space_set, register_space_set
     from learning.concepts.track_mixture import TrackMixture
 
@@ -27,6 +28,7 @@ __all__ = [
     "Gaussian",
     "IncrementalMixture",
     "Mixture",
+    "ModeMixture",
     "SpaceSet",
     "TrackMixture",
     "find_space_set",
@@ -42,6 +44,7 @@ _HOMES = {
     "register_space_set": "space_set",
     "find_space_set": "space_set",
     "Mixture": "mixture",
+    "ModeMixture": "mode_mixture",
     "TrackMixture": "track_mixture",
     "FEATURE_SPACES": "feature_space",
     "ConceptSpaces": "concept_spaces",

@@ -7,14 +7,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.concepts.demo_concepts import DemoConcepts
-from learning.concepts.feature_space import FeatureSpace
+from learning.concepts.feature_space import FeatureSpace, Kinds
 from learning.concepts.incremental_mixture import IncrementalMixture
 from learning.concepts.mixture import Mixture
+from learning.concepts.mode_mixture import ModeMixture
 from learning.concepts.space_set import BOARD, SpaceSet, find_space_set
 from learning.concepts.track_mixture import TrackMixture
 from learning.errors import KnowledgeError, PerceptionError
 from learning.graphs.action_library import ActionLibrary
 from robots.pose import FloatArray
+
+_MIXTURES: Mapping[Kinds, type[IncrementalMixture | ModeMixture | TrackMixture]] = {
+    "tested": IncrementalMixture,
+    "wide": ModeMixture,
+    "learned": TrackMixture,
+}
 
 
 class ConceptSpaces:
@@ -37,8 +44,7 @@ class ConceptSpaces:
         """
         self.space_set = find_space_set(spaces) if isinstance(spaces, str) else spaces
         self.mixtures: dict[str, Mixture] = {
-            space.name: IncrementalMixture(space) if space.kinds == "tested" else TrackMixture(space)
-            for space in self.space_set.spaces
+            space.name: _MIXTURES[space.kinds](space) for space in self.space_set.spaces
         }
         self.actions = ActionLibrary()
 
@@ -80,8 +86,8 @@ class ConceptSpaces:
         return self.mixtures[space].classify(self.space(space).embed(values))
 
     def resolve(self, space: str, number: int) -> int:
-        """The number that a concept is known by now (see `IncrementalMixture.resolve`)."""
-        return self.actions.resolve(number) if space == "action" else self.mixtures[space].resolve(number)
+        """The number that a concept is known by now (see `IncrementalMixture.resolve`); actions keep theirs."""
+        return number if space == "action" else self.mixtures[space].resolve(number)
 
     def to_json(self) -> dict[str, Any]:
         """Plain numbers, lists and strings; `from_json` gives the same concepts back exactly."""
@@ -101,8 +107,7 @@ class ConceptSpaces:
         try:
             spaces = cls(str(data.get("set", BOARD.name)))  # older files are all of the board
             for space in spaces.space_set.spaces:
-                kind = IncrementalMixture if space.kinds == "tested" else TrackMixture
-                spaces.mixtures[space.name] = kind.from_json(space, data["spaces"][space.name])
+                spaces.mixtures[space.name] = _MIXTURES[space.kinds].from_json(space, data["spaces"][space.name])
             spaces.actions = ActionLibrary.from_json(data["actions"])
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise KnowledgeError(f"concepts: {type(error).__name__} {error}; learn again or restore the file") from None

@@ -70,6 +70,7 @@ def fit_demo(
     """
     _check_labels(labels or {}, observation, spaces)
     values = feature_values(observation, rng, spaces)
+    frames, resting = _looked_at(observation, spaces), resting_track(observation)
     number = len(observation.object_ids)
     components, noise, names = {}, {}, {}
     with threadpools().limit(limits=1):  # threads cost five times what these small matrices take
@@ -79,7 +80,7 @@ def fit_demo(
                 chosen = np.sort(rng.choice(len(points), MOST_POINTS, replace=False))
                 points, tracks = points[chosen], tracks[chosen]
             if space.kinds == "learned":
-                noise[name] = TrackNoise.within(points, tracks)
+                noise[name] = TrackNoise.within(*_property_values(observation, space, frames, resting, glimpsed=True))
             called = {} if space.relation else _names_by_object(labels or {}, observation, name)
             if not called:
                 components[name] = fit_mixture(points, tracks, space)
@@ -109,7 +110,7 @@ def feature_values(observation: Observation, rng: np.random.Generator, spaces: S
     flies past is no relation. Values that were not measured are left out. Distance holds near pairs of objects, and the
     gripper with the object it manipulates.
     """
-    frames = np.unique(np.linspace(0, len(observation.times) - 1, spaces.frames).round().astype(int))
+    frames = _looked_at(observation, spaces)
     resting = resting_track(observation)
     values = {space.name: _property_values(observation, space, frames, resting) for space in spaces.properties}
     for space in spaces.relations:
@@ -127,12 +128,21 @@ def feature_values(observation: Observation, rng: np.random.Generator, spaces: S
     return values
 
 
+def _looked_at(observation: Observation, spaces: SpaceSet) -> NDArray[np.int64]:
+    """Frames whose values are clustered."""
+    return np.unique(np.linspace(0, len(observation.times) - 1, spaces.frames).round().astype(int))
+
+
 def _property_values(
-    observation: Observation, space: type[FeatureSpace], frames: NDArray[np.int64], resting: NDArray[np.int64]
+    observation: Observation,
+    space: type[FeatureSpace],
+    frames: NDArray[np.int64],
+    resting: NDArray[np.int64],
+    glimpsed: bool = False,
 ) -> Values:
     """Embedded values (n, d) of a property and the track of each, (n,), where it was seen and measured."""
     number = len(observation.object_ids)
-    measured = space.measured(observation)
+    measured = space.glimpsed(observation) if glimpsed else space.measured(observation)
     if measured is None or number == 0:
         return np.zeros((0, space.dimension)), np.zeros(0, dtype=np.int64)
     if space.in_motion:

@@ -41,8 +41,9 @@ class FeatureSpace:
             one thing, in whatever place and turned whichever way; else to the object in its place.
         in_motion: Whether a value is measured while the object moves too, and not only at rest.
         kinds: How concepts are told apart over demos. `tested`: their covariances and means are tested for equality
-            (`IncrementalMixture`). `wide`: what is nearer than `kind_width` is one. `learned`: how much things of one
-            kind differ is learned from the tracks and from what was merged (`TrackMixture`, both).
+            (`IncrementalMixture`). `wide`: what climbs to one mode, at the scale of `kind_width`, is one
+            (`ModeMixture`). `learned`: how much things of one kind differ is learned from the tracks and from what is
+            of one kind (`TrackMixture`).
         kind_width: Root mean square distance, embedded, between what two concepts hold, below which they are one;
             for `wide` only.
     """
@@ -69,6 +70,14 @@ class FeatureSpace:
         Unless a space says otherwise they are `Observation.features` of its name. Relations measure offsets.
         """
         return observation.features.get(cls.name)
+
+    @classmethod
+    def glimpsed(cls, observation: Observation) -> FloatArray | None:
+        """As `measured`, also where a thing was seen badly: what that changes is no difference between things.
+
+        Only spaces that learn how much things of one kind differ ask for it.
+        """
+        return cls.measured(observation)
 
     @staticmethod
     def embed(values: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ from robots.pose import FloatArray
 
 
 class Mixture(Protocol):
-    """The concepts of one feature space: `IncrementalMixture` (appendix A) or `TrackMixture`.
+    """The concepts of one feature space: `IncrementalMixture` (appendix A), `ModeMixture` or `TrackMixture`.
 
     Concept numbers are never used twice. A concept that was merged into another stays known as an alias (`resolve`).
     """

@@ -56,8 +56,17 @@ class TableShape(FeatureSpace):
     @classmethod
     def measured(cls, observation: Observation) -> FloatArray | None:
         """Histogram and the three sides [m] of each object, (F, N, 36); sides of 1 where none are known."""
-        sides = np.ones((*observation.shape.shape[:2], 3)) if observation.extent is None else observation.extent
-        return np.concatenate([observation.shape, sides], axis=2)
+        return cls._with_sides(observation.shape, observation)
+
+    @classmethod
+    def glimpsed(cls, observation: Observation) -> FloatArray | None:
+        """The same, with histograms of half hidden views too."""
+        return cls._with_sides(observation.features.get("glimpsed_shape", observation.shape), observation)
+
+    @staticmethod
+    def _with_sides(histograms: FloatArray, observation: Observation) -> FloatArray:
+        sides = np.ones((*histograms.shape[:2], 3)) if observation.extent is None else observation.extent
+        return np.concatenate([histograms, sides], axis=2)
 
     @staticmethod
     def embed(values: FloatArray) -> FloatArray:

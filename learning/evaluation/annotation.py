@@ -1,11 +1,17 @@
 """Reading `annotation.txt` of a Train-Robots release. Only the scorer does this: the learner never sees a tree."""
 
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from learning.evaluation.public_tree import PublicNode, Span
+from learning.train_robots.change import Change
 from learning.train_robots.reader import Line, read_lines
+from learning.train_robots.release import Release
 
+CHANGED_LABELS = {"shape": "type", "colour": "color"}
+"""Property of a block to the public label of its leaf."""
 ANNOTATION_FILE = "annotation.txt"
 
 _PIECES = re.compile(r"\(|\)|[^\s()]+")
@@ -48,6 +54,31 @@ def load_annotations(directory: str | Path) -> dict[int, PublicNode] | None:
             raise line.error(f"command id {number} stands twice; ids must differ")
         trees[number] = _TreeReader(line, text).tree()
     return trees
+
+
+def annotations_of(release: Release) -> dict[int, PublicNode] | None:
+    """Read the trees of a release by command id, with what its extension changed; None without `annotation.txt`.
+
+    Leaves that words stand for change with their words; what the annotation only implies stays as it is.
+
+    Raises ReleaseError that names file, line and what is wrong.
+    """
+    trees = load_annotations(release.directory)
+    if trees is None or not release.changes:
+        return trees
+    scene_of = {command.id: command.scene for command in release.commands}
+    return {number: _changed(tree, release.changes.get(scene_of.get(number, 0), ())) for number, tree in trees.items()}
+
+
+def _changed(node: PublicNode, changes: Sequence[Change]) -> PublicNode:
+    value = node.value
+    if value is not None and node.tokens is not None:
+        kind, dash, rest = value.partition("-")
+        for change in changes:
+            if node.label == CHANGED_LABELS[change.what] and kind == change.old:
+                value = change.new + dash + rest
+                break
+    return replace(node, value=value, children=tuple(_changed(child, changes) for child in node.children))
 
 
 class _TreeReader:

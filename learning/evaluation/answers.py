@@ -1,7 +1,8 @@
 """What a learner answers when it is asked commands about scenes: taken down first, scored afterwards."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from time import perf_counter, process_time
 from typing import Protocol
 
 from learning.concept_id import Concept
@@ -60,6 +61,9 @@ class Student(Protocol):
 
 Learn = Callable[[Sequence[Scene], Sequence[Command]], Student]
 """Learn from scenes and from commands about them (some scenes have no command)."""
+Steps = Callable[[Sequence[Scene], Sequence[Command]], Iterator[tuple[Student, int, float]]]
+"""The same scene by scene, where a learner can be watched (its attribute `steps`): the student so far, how many
+commands it has heard, and the processor time that the scene took [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +77,8 @@ class Answer:
         tree: RCL tree, or None.
         understood: Whether there was a goal.
         explanation: The learner's own words.
+        seconds: Time until the answer [s].
+        cpu_seconds: Processor time of it [s].
     """
 
     command: Command
@@ -81,6 +87,8 @@ class Answer:
     tree: RclNode | None
     understood: bool
     explanation: str
+    seconds: float = 0.0
+    cpu_seconds: float = 0.0
 
 
 def ask(
@@ -104,7 +112,9 @@ def ask(
         percept = student.percept(scene)
         tally.add(percept, student.shown_action(scene), scene)
         for command in about:
+            begun, cpu_begun = perf_counter(), process_time()
             said = student.interpret(command.sentence, percept)
+            seconds, cpu_seconds = perf_counter() - begun, process_time() - cpu_begun
             goals = said.goals if said.understood else ()
             answers.append(
                 Answer(
@@ -114,6 +124,8 @@ def ask(
                     tree=said.tree,
                     understood=bool(goals),
                     explanation=said.explanation,
+                    seconds=seconds,
+                    cpu_seconds=cpu_seconds,
                 )
             )
             on_answer()

@@ -31,6 +31,10 @@ SETTINGS = {
 }
 
 
+POINTED = ("prism", "sphere")
+"""Shapes that nothing can rest on."""
+
+
 @dataclass(frozen=True, slots=True)
 class Outcome:
     """One thing that could be done in a layout: which block, to which cell; None keeps it in the gripper."""
@@ -50,7 +54,7 @@ def possible_outcomes(layout: Layout) -> list[Outcome]:
     goals: dict[tuple[int, int], Cell] = {}
     for column in ((x, y) for x in range(CELLS) for y in range(CELLS)):
         below = None if column not in top else layout.blocks[top[column]]
-        if below is None or (below.shape != "prism" and below.cell[2] + 1 < CELLS):
+        if below is None or (below.shape not in POINTED and below.cell[2] + 1 < CELLS):
             goals[column] = (*column, 0 if below is None else below.cell[2] + 1)
     if layout.held is not None:
         return [Outcome(layout.held, goal) for goal in goals.values()]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from learning.errors import LearningError
-from learning.evaluation.annotation import load_annotations, tokens_of, word_tokens
+from learning.evaluation.annotation import annotations_of, tokens_of, word_tokens
 from learning.evaluation.answers import Answer, Learn, ask
 from learning.evaluation.folds import Fold, make_folds
 from learning.evaluation.grammar_bounds import Chunker, bracket_f1, right_branching
@@ -60,7 +60,7 @@ def board_exam(
     Raises:
         LearningError: There is no annotation, or so many folds are not possible.
     """
-    trees = load_annotations(release.directory)
+    trees = annotations_of(release)
     if trees is None:
         raise LearningError(f"{release.directory}: without annotation.txt there is nothing to compare words with")
     scores = []
@@ -137,6 +137,7 @@ def _scored(
                 frozenset(pairs & gold_pairs), frozenset(pairs - gold_pairs), frozenset(gold_pairs - pairs)
             )
             target[f"{before}.{space}"] = result.f1
+            target[f"{before}_by_use.{space}"] = _by_use(uses.get(who, {}), uses.get("gold", {}), space)
             if who == "ours":
                 failures += [Failure(f"{space}: wrong pair", n, "en", f"means {v}") for n, v in sorted(result.wrong)]
                 failures += [
@@ -197,6 +198,26 @@ def _count(
             leaf.span,
         )
         rows[_ngram(tokens, span)][f"{leaf.space}:{leaf.value}"] += 1
+
+
+def _by_use(rows: Mapping[str, Counter[str]], gold: Mapping[str, Counter[str]], space: str) -> float | None:
+    """F1 of the pairs of a feature space, each counted as often as it is used; None where the space is not used.
+
+    The set of pairs weighs a slip in one command as much as a word of a thousand; this does not.
+    """
+    ours, wanted = (
+        Counter(
+            {
+                (ngram, tag): count
+                for ngram, row in table.items()
+                for tag, count in row.items()
+                if tag.startswith(f"{space}:")
+            }
+        )
+        for table in (rows, gold)
+    )
+    total = ours.total() + wanted.total()
+    return 2.0 * (ours & wanted).total() / total if total else None
 
 
 def _pairs(rows: Mapping[str, Counter[str]], space: str, least: float) -> set[Pair]:

@@ -13,6 +13,17 @@ from learning.train_robots.release import Command
 from learning.train_robots.scene import Scene
 from twin.board import nearest_cell
 
+CAUSES = {
+    "not understood: nothing in the scene": "not understood: nothing in the scene fits a word",
+    "not understood: the words do not add up": "not understood: the words do not add up to an action",
+    "not understood": "not understood: too little was learned",
+    "moves": "wrong thing",
+    "keeps": "right thing, not put down",
+    "puts": "right thing, wrong place",
+    "scene": "the scene does not move exactly one block",
+}
+"""Beginnings of reasons to what they have in common; the longer ones stand first."""
+
 
 @dataclass(frozen=True, slots=True)
 class CommandScore:
@@ -74,6 +85,14 @@ def fault(answer: Answer, scene: Scene) -> str:
     if move.held_at_end:
         return f"puts the block in cell {cell} instead of keeping it"
     return "" if cell == move.goal else f"puts the block in cell {cell} instead of {move.goal}"
+
+
+def cause_of(reason: str) -> str:
+    """The sort of fault that a reason tells of, for counting."""
+    for beginning, cause in CAUSES.items():
+        if reason.startswith(beginning):
+            return cause
+    return reason
 
 
 def _describe(block: Block) -> str:

@@ -4,10 +4,11 @@ Demos are seen one after another, as a learner sees them. What is scored is the 
 end with the true classes of the instances of all demos.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from statistics import median
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +62,7 @@ class _Seen:
     """What was gathered on the way."""
 
     rows: dict[str, list[tuple[int, FloatArray, str]]] = field(default_factory=dict)
+    unmeasured: Counter[str] = field(default_factory=Counter)
     groups: list[int] = field(default_factory=list)
     actions: list[int] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
@@ -119,7 +121,11 @@ def evaluate_concepts(
         if labelled is not None:
             said = _said(demo, number, labels, spaces)
             labelled.update(fit_demo(demo.observation, rng, spaces, said))
-        for row, found in instances_of(demo.observation, demo.truth, rules, spaces, rng).items():
+        instances = instances_of(demo.observation, demo.truth, rules, spaces, rng)
+        for name, classes in demo.truth.properties.items():
+            if name in spaces.names:
+                seen.unmeasured[name] += sum(each is not None for each in classes) - len(instances.get(name, ()))
+        for row, found in instances.items():
             seen.rows.setdefault(row, []).extend((number, value, name) for value, name in found)
         if demo.truth.action is not None:
             value = action_values(demo.observation)
@@ -148,7 +154,7 @@ def _learn(
     demo: ScoredDemo, known: ConceptSpaces, learner: Learner | None, rng: np.random.Generator, seen: _Seen
 ) -> int:
     """Learn from a demo as a learner does, timed; returns the number of its action."""
-    begun = perf_counter()
+    begun = process_time()
     concepts = fit_demo(demo.observation, rng, known.space_set)
     if learner is not None:
         learner.study(demo.observation, demo.utterances, concepts)
@@ -163,7 +169,7 @@ def _learn(
             action = NO_CONCEPT if found is None else found
     except PerceptionError:
         action = NO_CONCEPT
-    seen.seconds.append(perf_counter() - begun)
+    seen.seconds.append(process_time() - begun)
     return action
 
 
@@ -225,6 +231,7 @@ def _rows(
             known=len(known.actions) if space == "action" else len(known.mixtures[space].components),
             ours=ours,
             svm=_svm_score(found, groups, seed),
+            unmeasured=seen.unmeasured[name],
         )
         if igmm is not None and space in igmm.mixtures and igmm.mixtures[space].components:
             mixture = igmm.mixtures[space]

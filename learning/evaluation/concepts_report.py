@@ -27,6 +27,7 @@ class ConceptRow:
         svm: V-measure of the SVM with the best C; None where there are too few demos.
         labelled: V-measure with a few labels; None where none were given.
         labelled_concepts: Concepts that then hold for the instances.
+        unmeasured: Objects with a class that was never measured of them: scored for nobody.
     """
 
     name: str
@@ -41,6 +42,7 @@ class ConceptRow:
     svm: float | None = None
     labelled: float | None = None
     labelled_concepts: int | None = None
+    unmeasured: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +108,7 @@ class ConceptsReport:
                 "true_concepts": float(row.classes),
                 "known_concepts": float(row.known),
                 "instances": float(row.instances),
+                "unmeasured": float(row.unmeasured),
             }
             if row.labelled is not None:
                 scores["labelled_v_measure"] = row.labelled

@@ -10,17 +10,17 @@ from learning.evaluation.describe_truth import SupervisedReader, TrueBoard
 from learning.evaluation.public_tree import PublicNode
 from learning.grammar.arrangement import Arrangement
 from learning.grammar.board_elements import BoardElements
-from learning.grounding.reading_learner import ReadingLearner
 from learning.interpretation import Interpreter
 from learning.knowledge import Knowledge
 from learning.percept import Percept
-from learning.perception import perceive, percept_of
-from learning.saying.board_speaker import BoardSpeaker, read_thing
+from learning.perception import percept_of
+from learning.saying.speaker import Speaker
 from learning.train_robots import Command, Scene, key_frames, observe_before
 from twin.board import CELLS, nearest_cell
 
 NO_SENTENCE = "no sentence was found that is read back as it is meant"
 MISREAD = "it is read otherwise when the scene is looked at afresh"
+AMBIGUOUS = "its parts can also be attached so that it says something else that can be done, or is there"
 UNTRUE = "a reader trained on the annotated words finds another, or more, that fits"
 
 
@@ -30,8 +30,7 @@ class BoardDescriber:
     def __init__(
         self,
         knowledge: Knowledge,
-        language: ReadingLearner,
-        speaker: BoardSpeaker,
+        speaker: Speaker,
         reader: SupervisedReader | None,
         rng: np.random.Generator,
     ) -> None:
@@ -39,13 +38,11 @@ class BoardDescriber:
 
         Args:
             knowledge: What was learned, from other scenes.
-            language: Its language.
             speaker: Who speaks.
             reader: Reads by the annotated trees; None without them.
             rng: Source of the noise of perception, and of the choice of objects.
         """
         self.knowledge = knowledge
-        self.language = language
         self.speaker = speaker
         self.reader = reader
         self.rng = rng
@@ -56,43 +53,43 @@ class BoardDescriber:
         move = scene.move
         source, sort = f"scene {scene.number}", "" if move is None else move.kind
         try:
-            percept, shown = perceive(key_frames(scene, self.rng), self.knowledge.spaces, learn_action=False)
+            said = self.speaker.event(key_frames(scene, self.rng))
         except PerceptionError as error:
-            return Described(EVENT, "en", source, "", False, False, f"not perceived: {error}", sort)
-        said = self.speaker.event(Arrangement.of(percept), shown.action, shown.moved, shown.placement)
+            return self._unsaid(EVENT, source, sort, f"not perceived: {error}")
         if said is None:
-            return Described(EVENT, "en", source, "", False, False if self.reader else None, NO_SENTENCE, sort)
+            return self._unsaid(EVENT, source, sort, NO_SENTENCE)
         same = self._does(said.text, scene)
-        true = None
-        if self.reader is not None and move is not None:
-            true = does_truly(scene, self.reader.commands(said.text))
-        cause = MISREAD if not same else UNTRUE if true is False else ""
-        return Described(EVENT, "en", source, said.text, same, true, cause, sort)
+        true, possible = (None, None) if self.reader is None else does_truly(scene, self.reader.commands(said.text))
+        cause = MISREAD if not same else UNTRUE if possible is False else AMBIGUOUS if true is False else ""
+        return Described(EVENT, "en", source, said.text, same, true, possible, cause, sort)
 
     def thing(self, scene: Scene, index: int) -> Described:
         """Say where a block of the layout before is."""
         source = f"scene {scene.number}, block {index}"
-        arrangement = Arrangement.of(self._percept(scene))
-        elements = BoardElements(arrangement)
-        free = elements.clear >> index & 1
-        sort = "held" if arrangement.held == index else "free" if free else "buried"
-        said = self.speaker.thing(arrangement, index)
+        board = TrueBoard(scene.before)
+        elements = board.scene
+        sort = "held" if elements.held >> index & 1 else "free" if elements.clear >> index & 1 else "buried"
+        said = self.speaker.thing(observe_before(scene, self.rng), index)
         if said is None:
-            return Described(OBJECT, "en", source, "", False, False if self.reader else None, NO_SENTENCE, sort)
+            return self._unsaid(OBJECT, source, sort, NO_SENTENCE)
         afresh = BoardElements(Arrangement.of(self._percept(scene)), self.knowledge.bearing_shapes())
-        shares = read_thing(self.knowledge, self.language, tuple(said.text.split(" ")), afresh)
+        shares = self.speaker.heard_thing(said.text, afresh)
         same = bool(shares) and max(shares, key=lambda mask: shares[mask]) == 1 << index
-        true = None
+        true = possible = None
         if self.reader is not None:
-            board = TrueBoard(scene.before)
-            true = {mask for tree in self.reader.things(said.text) if (mask := board.thing(tree))} == {1 << index}
-        cause = MISREAD if not same else UNTRUE if true is False else ""
-        return Described(OBJECT, "en", source, said.text, same, true, cause, sort)
+            masks = {mask for tree in self.reader.things(said.text) if (mask := board.thing(tree))}
+            true, possible = masks == {1 << index}, 1 << index in masks
+        cause = MISREAD if not same else UNTRUE if possible is False else AMBIGUOUS if true is False else ""
+        return Described(OBJECT, "en", source, said.text, same, true, possible, cause, sort)
+
+    def _unsaid(self, what: str, source: str, sort: str, cause: str) -> Described:
+        checked = None if self.reader is None else False
+        return Described(what, "en", source, "", False, checked, checked, cause, sort)
 
     def people(self, scene: Scene, commands: Sequence[Command]) -> Iterator[tuple[bool, bool | None]]:
         """The same measures for what people said of a scene: understood by us, and by the reader."""
         for command in commands:
-            true = None if self.reader is None else does_truly(scene, self.reader.commands(command.sentence))
+            true = None if self.reader is None else does_truly(scene, self.reader.commands(command.sentence))[0]
             yield self._does(command.sentence, scene), true
 
     def _percept(self, scene: Scene) -> Percept:
@@ -108,14 +105,19 @@ class BoardDescriber:
         return move.held_at_end if position is None else nearest_cell(position) == move.goal and not move.held_at_end
 
 
-def does_truly(scene: Scene, trees: Iterable[PublicNode]) -> bool:
-    """Whether public trees, carried out among the true blocks, allow just the move that a scene shows."""
+def does_truly(scene: Scene, trees: Iterable[PublicNode]) -> tuple[bool, bool]:
+    """Whether public trees, carried out among the true blocks, allow just the move that a scene shows.
+
+    Returns:
+        Whether all of them do that can be carried out, and whether any does.
+    """
     move = scene.move
     if move is None:
-        return False
-    goal = None if move.held_at_end else move.goal[0] * CELLS + move.goal[1]
+        return False, False
+    wanted = {(move.object_id, None if move.held_at_end else move.goal[0] * CELLS + move.goal[1])}
     board = TrueBoard(scene.before)
-    return {each for tree in trees for each in board.moves(tree)} == {(move.object_id, goal)}
+    found = [moves for tree in trees if (moves := board.moves(tree))]
+    return bool(found) and all(moves == wanted for moves in found), wanted in found
 
 
 def describe_scenes(
@@ -127,7 +129,7 @@ def describe_scenes(
     rng: np.random.Generator,
     on_done: Callable[[], None] = lambda: None,
 ) -> list[Described]:
-    """Describe random scenes of one moved block each, and a random block of each of as many scenes as there are objects.
+    """Describe random scenes of one moved block each, and a random block of each of other random scenes.
 
     Args:
         describer: Who describes.

@@ -23,7 +23,9 @@ class Described:
         source: The demo, and the object.
         text: The sentence; empty where there is none.
         same: Whether it is understood as the same event, or as the object alone, when the scene is looked at afresh.
-        true: The same by the truth of the scene and a reader that is not ours; None where that was not asked.
+        true: The same by the truth of the scene and a reader that is not ours, in all ways in which its parts can be
+            attached; None where that was not asked.
+        possible: The same in at least one of these ways.
         cause: Why not, in a few words that many failures share.
         sort: What sort of event or object it is.
     """
@@ -34,6 +36,7 @@ class Described:
     text: str
     same: bool
     true: bool | None
+    possible: bool | None
     cause: str = ""
     sort: str = ""
 
@@ -91,11 +94,13 @@ class DescribeReport:
 
 def _shares(rows: list[Described], before: str, name: str) -> dict[str, float | None]:
     known = [each.true for each in rows if each.true is not None]
+    some = [each.possible for each in rows if each.possible is not None]
     return {
         f"{before}.count": float(len(rows)),
         f"{before}.described": _mean(bool(each.text) for each in rows),
         f"{before}.{name}": _mean(each.same for each in rows),
         f"{before}.true": _mean(known) if known else None,
+        f"{before}.possible": _mean(some) if some else None,
     }
 
 

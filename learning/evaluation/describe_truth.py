@@ -2,7 +2,8 @@
 
 The words are read by a supervised tagger that knows only the annotated trees, and put together in all ways in which
 relations can be attached; colours and shapes are the true ones of the layout. A sentence is true of an event when every
-way that can be carried out does just that. Shared with the learner is how places and relations are measured (`learning.grammar.innate`).
+way that can be carried out does just that. Shared with the learner is how places and relations are measured
+(`learning.grammar.innate`).
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -100,9 +101,7 @@ def _parts(leaves: Sequence[PublicNode]) -> list[_Part]:
         elif leaf.value == "tile":
             continue
         elif leaf.label == "relation" or (last is not None and _unfinished(last) and leaf.value in SIDE_OF):
-            if last is not None and last.relation and not last.about and not _unfinished(last) and last.action is None:
-                found[-1] = _Part(relation=(*last.relation, leaf))
-            elif last is not None and _unfinished(last):
+            if last is not None and last.relation and not last.about:
                 found[-1] = _Part(relation=(*last.relation, leaf))
             else:
                 found.append(_Part(relation=(leaf,)))
@@ -193,9 +192,9 @@ class TrueBoard:
         if known and known[0].nearest:
             mask = self.scene.nearest_to_robot(mask)
         for child in node.children:
-            goal = self._goal(child) if child.label == "spatial-relation" else None
-            if goal is not None and mask:
-                mask = next(iter(self.scene.related(goal.relation, goal.ground, mask)), 0)
+            if child.label == "spatial-relation" and mask:
+                goal = self._goal(child)
+                mask = 0 if goal is None else next(iter(self.scene.related(goal.relation, goal.ground, mask)), 0)
         return mask
 
     def moves(self, tree: PublicNode) -> set[Move]:

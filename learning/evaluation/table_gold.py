@@ -4,12 +4,12 @@ Annotators are programs with a known grammar, so that a sentence, its speaker an
 doubt. Elements are those of the thesis (table 5.1); a leaf is aligned to its head (`table_vocabulary`).
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any
 
 from learning.evaluation.public_tree import PublicNode, Span
-from learning.evaluation.table_vocabulary import Words, entries_of, verbs_of
+from learning.evaluation.table_vocabulary import Entry, Words, entries_of, verbs_of
 from learning.grounding.ngrams import words_of
 
 LOOKS = ("colour", "shape", "size")
@@ -64,21 +64,24 @@ class _Event:
 
 def gold_sentences(truth: Mapping[str, Any]) -> list[GoldSentence]:
     """The sentences of a sidecar with their trees; empty where it tells of none."""
-    return [gold_sentence(said, str(truth.get("action", ""))) for said in truth.get("sentences", ())]
+    things = truth.get("objects", {})
+    shapes = frozenset(str(thing.get("shape", "")) for thing in things.values())
+    return [gold_sentence(said, str(truth.get("action", "")), shapes) for said in truth.get("sentences", ())]
 
 
-def gold_sentence(said: Mapping[str, Any], action: str) -> GoldSentence:
+def gold_sentence(said: Mapping[str, Any], action: str, shapes: Set[str] = frozenset()) -> GoldSentence:
     """One sentence of a sidecar with its tree.
 
     Args:
         said: Its entry: text, language, annotator, template, mistakes.
         action: What was done.
+        shapes: Shapes of the things that were there: a word that some say of two shapes means one of these.
     """
     words = words_of(str(said["text"]))
     language, annotator = str(said["language"]), str(said["annotator"])
     mistakes = tuple(str(each) for each in said.get("mistakes", ()))
     steps = "two steps" in str(said.get("template", ""))
-    leaves = tuple(_leaves(_righted(words, mistakes), language, annotator, action, steps))
+    leaves = tuple(_leaves(_righted(words, mistakes), language, annotator, action, steps, shapes))
     return GoldSentence(words, language, leaves, _tree(words, leaves), mistakes)
 
 
@@ -90,9 +93,13 @@ def _righted(words: Words, mistakes: Sequence[str]) -> Words:
     return tuple(meant.get(word, word) for word in words)
 
 
-def _leaves(words: Words, language: str, annotator: str, action: str, steps: bool) -> Iterator[GoldLeaf]:
+def _leaves(
+    words: Words, language: str, annotator: str, action: str, steps: bool, shapes: Set[str]
+) -> Iterator[GoldLeaf]:
     """Leaves of a sentence, by the longest phrase at each position."""
     entries, verbs = entries_of(language, annotator), verbs_of(language, annotator)
+    entries = sorted(entries, key=lambda each: not _is_of(each, shapes))
+    entries = sorted(entries, key=lambda each: -len(each.phrase))
     at, acted = 0, 0
     while at < len(words):
         verb, joined = _verb_at(words, at, verbs, language)
@@ -111,6 +118,11 @@ def _leaves(words: Words, language: str, annotator: str, action: str, steps: boo
             at += len(entry.phrase)
         else:
             at += 1
+
+
+def _is_of(entry: Entry, shapes: Set[str]) -> bool:
+    """Whether an entry names a shape that was there."""
+    return any(element == "shape" and value in shapes for _, _, element, value in entry.heads)
 
 
 def _around(heads: Sequence[tuple[int, int, str, str]], first: int, last: int, length: int) -> tuple[int, int]:

@@ -11,7 +11,8 @@ from learning.errors import PerceptionError
 from learning.evaluation.concepts import ScoredDemo
 from learning.evaluation.concepts_truth import band_of, table_side
 from learning.graphs.action_states import shown_action
-from learning.grounding.table_scene import BESIDE, MIDDLE, NAMED, SIDE_PLACES, looks_of
+from learning.grounding.kind_sizes import LARGER, SMALLER
+from learning.grounding.table_scene import BESIDE, MIDDLE, NAMED, OVER, SIDE_PLACES, looks_of
 from learning.knowledge import Knowledge
 from learning.percept import NO_CONCEPT
 
@@ -30,7 +31,7 @@ def concept_values(knowledge: Knowledge, demos: Iterable[ScoredDemo]) -> dict[Co
     for demo in demos:
         _count(knowledge, demo, counts)
     named = {concept: min(row, key=lambda value: (-row[value], value)) for concept, row in counts.items()}
-    return {**named, **PLACE_NAMES, BESIDE: "close"}
+    return {**named, **PLACE_NAMES, BESIDE: "close", OVER: "above", SMALLER: "small", LARGER: "large"}
 
 
 def _count(knowledge: Knowledge, demo: ScoredDemo, counts: defaultdict[Concept, Counter[str]]) -> None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from learning.grammar.actions import ActionTable
+from learning.grammar.innate import ONE
 from learning.grammar.phrase import Feature, Phrase
 from learning.grammar.phrase_chart import Denotation, Modifier, PhraseChart
 from learning.grammar.scene import bits
@@ -17,6 +18,7 @@ from learning.grammar.scene import bits
 BEAM = 25
 """Partial readings kept after every word."""
 GAP = 9.0
+NO_REFERENT: Feature = ("reference", "to nothing")
 PARTS = ("action", "entity", "modifier", "shift")
 
 Moves = tuple[tuple[int, int], ...]
@@ -199,6 +201,9 @@ class _Reader:
             refers = cast(Denotation, phrase.meaning)[2]
             if refers != (opening is not None):
                 return None
+            if opening is None and goal is None and _refers_back(phrase):
+                features = (*features, NO_REFERENT)
+                score += self.weight(NO_REFERENT)
             entity = phrase
             order += "e"
         else:
@@ -293,6 +298,13 @@ class _Reader:
             )
             ground = scene.nearest(open_ones or ground, 1 << thing)
         return scene.landing(goal.relation, ground)
+
+
+def _refers_back(entity: Phrase) -> bool:
+    """Whether an entity is called another of the sort that was spoken of before."""
+    while entity.children and entity.children[0].label == entity.label:
+        entity = entity.children[0]
+    return any(child.concept == ONE for child in entity.children)
 
 
 def _bucket(choices: int) -> str:

@@ -6,8 +6,11 @@ from learning.concept_id import Concept
 from learning.grammar.board_elements import BoardElements
 from learning.grammar.innate import (
     CENTRE,
+    COLLECTIVE,
     CORNER,
     EXTREMES,
+    FURTHEST,
+    GROUP,
     IT,
     NEAREST_ONE,
     ONE,
@@ -57,6 +60,9 @@ def fits(description: Description, more: Concept) -> bool:
         heads = [concept for concept in description if concept.space in ("shape", "kind", "reference")]
         if len(heads) == 1 and CENTRE in (*heads, more):
             return any(concept in (WHOLE, REGION) for concept in (*heads, more))
+        if len(heads) == 1 and COLLECTIVE in (*heads, more):
+            # What stands on one another, and what it is made of: "a stack of blocks".
+            return any(concept == GROUP or concept.space == "shape" for concept in (*heads, more))
         return not heads and more != UNIT
     return not same
 
@@ -75,6 +81,13 @@ def senses(description: Description, scene: BoardElements) -> list[Sense]:
     if reference == IT:
         return [Sense(scene.things & scene.blocks, False, True, "it")]
     places = kinds & set(PLACES)
+    if rank == FURTHEST:
+        if len(sides) != 1:
+            return []
+        if places:
+            rank = None
+        else:
+            rank, sides = EXTREMES[next(iter(sides))], frozenset()
     if places or (sides and len(description) == len(sides)):
         if colours or size is not None or (rank is not None and rank != NEAREST_ONE):
             return []

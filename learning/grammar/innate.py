@@ -47,7 +47,9 @@ EXTREMES = tuple(Concept("rank", 2 + number) for number in range(4))
 """Furthest to each of `SIDES`."""
 OTHER = Concept("rank", 6)
 """Not the one that was spoken of before; it rules nothing out that the scene does not."""
-RANKS = (NEAREST_ONE, SINGLE, *EXTREMES, OTHER)
+FURTHEST = Concept("rank", 7)
+"""Of a side that is said beside it: furthest to that side."""
+RANKS = (NEAREST_ONE, SINGLE, *EXTREMES, OTHER, FURTHEST)
 
 IT = REFERENCE
 """The very thing that was spoken of before."""
@@ -78,6 +80,7 @@ MEASURED: dict[Concept, str] = {
     BESIDE: "next to it on any side",
     NEAREST_ONE: "nearest to the robot or to what moves",
     SINGLE: "alone in its column",
+    FURTHEST: "furthest to the side that is said",
     OTHER: "not the one spoken of before",
     IT: "what was spoken of before",
     ONE: "another of the sort spoken of before",

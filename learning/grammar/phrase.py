@@ -44,6 +44,12 @@ class Phrase:
         for child in self.children:
             yield from child.leaves()
 
+    def walk(self) -> Iterator["Phrase"]:
+        """Walk the phrase and all its parts."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
     def all_features(self) -> Iterator[Feature]:
         """Walk the features of the phrase and all its parts."""
         yield from self.features

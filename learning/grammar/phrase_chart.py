@@ -12,7 +12,7 @@ from typing import cast
 from learning.concept_id import ACTION_SPACE, Concept
 from learning.grammar.board_elements import BoardElements
 from learning.grammar.description import Description, Sense, fits, senses
-from learning.grammar.innate import ABOVE, BESIDE, SIDES, UNIT, WITHIN
+from learning.grammar.innate import ABOVE, BESIDE, NEAREST, NEAREST_ONE, SIDES, UNIT, WITHIN
 from learning.grammar.phrase import Feature, Phrase
 
 JOINED = ("action", "relation", "word", "heading")
@@ -24,6 +24,8 @@ MAX_PASSED = 3
 BEAMS = {"word": 8, "relation": 5, "heading": 4, "number": 3, "unit": 2, "action": 4}
 BEAM = 5
 """Phrases kept of one label over one span."""
+IN_VAIN: Feature = ("ranked", "in vain")
+"""Of an entity with a rank or side that rules nothing out."""
 GAP = 6.0
 """A phrase this much worse than the best of its label and span is dropped."""
 
@@ -117,6 +119,9 @@ class PhraseChart:
         labels: tuple[str, ...]
         if space == ACTION_SPACE:
             labels = ("action",)
+        elif concept == NEAREST:
+            # "The block nearest to the corner", "the nearest block": one measure, in two places of a sentence.
+            labels = ("relation", "word")
         elif space == "relation":
             labels = ("relation",)
         elif space == "side":
@@ -130,6 +135,7 @@ class PhraseChart:
         found = []
         used = tuple(range(use.first, use.after))
         for label in labels:
+            meaning = NEAREST_ONE if label == "word" and concept == NEAREST else concept
             score, features = use.score, use.features
             if len(labels) > 1:
                 extra: tuple[Feature, ...] = (("used", use.ngram, label), ("used", space, label))
@@ -140,7 +146,7 @@ class PhraseChart:
                 features = (*features, *extra)
             for after in range(use.after, min(use.after + MAX_PASSED, self.length) + 1):
                 gap = self.passed[after] - self.passed[use.after]
-                found.append(Phrase(label, use.first, after, score + gap, concept, features, (), concept, used))
+                found.append(Phrase(label, use.first, after, score + gap, meaning, features, (), meaning, used))
         return found
 
     def _fill(self, first: int, after: int, lexical: list[Phrase]) -> None:
@@ -285,7 +291,7 @@ class PhraseChart:
         for sense in known:
             features: tuple[Feature, ...] = (("sense", sense.feature), *ranks)
             if sense.idle:
-                features = (*features, ("ranked", "in vain"))
+                features = (*features, IN_VAIN)
             score = phrase.score + sum(map(self._weight, features))
             denotation = (sense.elements, sense.nearest, sense.refers)
             features = (*phrase.features, *features)
@@ -333,7 +339,7 @@ class PhraseChart:
             if elements == head:
                 features.append(("modified", "in vain"))
             elif nearest and not self.scene.open_to_choice(elements):
-                features.append(("ranked", "in vain"))
+                features.append(IN_VAIN)
             if number:
                 features.append(("modified", f"variant {number}"))
             if len(whole.children) and whole.children[-1].label == "modifier":

@@ -2,7 +2,10 @@
 
 from dataclasses import replace
 
+from learning.concept_id import Concept
 from learning.grammar.clauses import Clause, CommandReading
+from learning.grammar.innate import COLLECTIVE, EXTREMES, FURTHEST, SIDES
+from learning.grammar.innate import GROUP as KIND_GROUP
 from learning.grammar.phrase import Phrase
 from learning.grammar.rcl import RclNode
 
@@ -44,7 +47,31 @@ def _phrase(phrase: Phrase, kept: tuple[int, ...]) -> RclNode:
             parts.append(_phrase(child, kept))
     if ("sense", "group") in phrase.features or ("sense", "group unsaid") in phrase.features:
         parts = [replace(part, label=GROUP) if part.label in ("shape", "reference") else part for part in parts]
-    return _node(LABELS[phrase.label], tuple(parts))
+    return _node(LABELS[phrase.label], tuple(_together(parts)))
+
+
+def _together(parts: list[RclNode]) -> list[RclNode]:
+    """Make one leaf of neighbours that name one thing: a side with "furthest", a stack with what it is made of."""
+    found: list[RclNode] = []
+    for part in parts:
+        before = found[-1] if found else None
+        joint = None if before is None else _joint(before, part)
+        if before is not None and joint is not None:
+            found[-1] = RclNode(joint.space, joint, before.first, part.last)
+        else:
+            found.append(part)
+    return found
+
+
+def _joint(one: RclNode, two: RclNode) -> Concept | None:
+    """The concept that two neighbouring leaves together stand for."""
+    for rank, side in ((one, two), (two, one)):
+        if rank.concept == FURTHEST and side.concept in SIDES:
+            return EXTREMES[side.concept.number]
+    for whole, made_of in ((one, two), (two, one)):
+        if whole.concept == COLLECTIVE and (made_of.concept == KIND_GROUP or made_of.label in ("shape", GROUP)):
+            return COLLECTIVE
+    return None
 
 
 def _node(label: str, children: tuple[RclNode, ...]) -> RclNode:

@@ -13,12 +13,14 @@ from dataclasses import dataclass, field
 
 from learning.concept_id import ACTION_SPACE, REFERENCE, REFERENCE_SPACE, Concept
 from learning.grammar.rcl import RclNode
-from learning.grounding.table_scene import NAMED, NEAR_SPACE, PLACE_SPACE, TableScene
+from learning.grounding.kind_sizes import AMONG_KIND
+from learning.grounding.table_scene import NAMED, NEAR_SPACE, PLACE_SPACE, SUPPORT_SPACE, TableScene
 
 Rule = tuple[str, tuple[str, ...]]
 RuleWeight = Callable[[str, tuple[str, ...]], float]
+JunctureWeight = Callable[[str, tuple[str, ...]], float]
 LOCATION = "location"
-ELEMENTS = {PLACE_SPACE: LOCATION, NEAR_SPACE: "distance"}
+ELEMENTS = {PLACE_SPACE: LOCATION, NEAR_SPACE: "distance", SUPPORT_SPACE: "direction", AMONG_KIND: "size"}
 """Elements of concepts whose feature space is innate; all others are called as their space."""
 RELATIONS = ("direction", "distance")
 LONGEST_GAP = 5
@@ -28,6 +30,12 @@ MOST_ITEMS = 10
 """Items of one kind that an event may be made of."""
 ANYTHING = -1
 """Mask of an entity where there is no scene."""
+NOWHERE = "nowhere"
+"""What an event has in the place of a destination where it has none."""
+END = ""
+"""Where no more words are passed over."""
+LEAST_SHARE = 1e-4
+"""Ways that are rarer in all readings of a sentence are not counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +48,7 @@ class WordUse:
         concept: What it means; number -1 for any concept of the space, where there is no scene.
         ngram: Its pieces, joined by spaces.
         weight: Log probability of the n-gram, given the concept.
+        unseen: Whether it is taken to be said of what was not seen well enough to tell.
     """
 
     first: int
@@ -47,6 +56,7 @@ class WordUse:
     concept: Concept
     ngram: str
     weight: float
+    unseen: bool = False
 
 
 Edge = tuple[float, tuple["Item", ...], Rule | None]
@@ -87,11 +97,13 @@ class Expected:
         uses: (N-gram, concept) to how often it is read so.
         passed: Piece to how often it is passed over.
         rules: Rule to how often it is used.
+        junctures: Place between two parts, with a piece that is passed over there or `END`, to how often it is.
     """
 
     uses: Mapping[tuple[str, Concept], float]
     passed: Mapping[str, float]
     rules: Mapping[Rule, float]
+    junctures: Mapping[tuple[str, str], float]
 
 
 class TableChart:
@@ -103,6 +115,7 @@ class TableChart:
         uses: Sequence[WordUse],
         skip: Sequence[float],
         weight: RuleWeight,
+        juncture: JunctureWeight,
         scene: TableScene | None,
     ) -> None:
         """Build the chart.
@@ -110,13 +123,16 @@ class TableChart:
         Args:
             pieces: The sentence.
             uses: Ways to read its n-grams.
-            skip: Log weight of passing over each piece.
+            skip: Log weight of passing over each piece before and behind the command.
             weight: Log probability of a rule.
+            juncture: Log probability of passing over some pieces between two parts: name of the place, pieces.
             scene: What was shown; None reads the sentence by itself.
         """
         self._pieces = tuple(pieces)
         self._skip = skip
         self._weight = weight
+        self._juncture = juncture
+        self._passing: dict[tuple[str, int, int], float] = {}
         self._scene = scene
         self._masks = {} if scene is None else scene.masks()
         self._sums = [0.0]
@@ -135,6 +151,7 @@ class TableChart:
         self.root.outside = 0.0
         uses: defaultdict[tuple[str, Concept], float] = defaultdict(float)
         rules: defaultdict[Rule, float] = defaultdict(float)
+        junctures: defaultdict[tuple[str, str], float] = defaultdict(float)
         covered = [0.0] * len(self._pieces)
         for item in (self.root, *reversed(self._order)):
             if item.outside == -math.inf:
@@ -146,14 +163,19 @@ class TableChart:
                     covered[at] += share
             for own, parts, rule in item.edges:
                 below = own + sum(part.inside for part in parts)
+                share = math.exp(item.outside + below - total)
                 if rule is not None:
-                    rules[rule] += math.exp(item.outside + below - total)
+                    rules[rule] += share
+                if share > LEAST_SHARE:
+                    for before, behind in zip(parts, parts[1:], strict=False):
+                        for piece in (*self._pieces[before.after : behind.first], END):
+                            junctures[_place(item.label, behind), piece] += share
                 for part in parts:
                     part.outside = _add(part.outside, item.outside + below - part.inside)
         passed: defaultdict[str, float] = defaultdict(float)
         for piece, share in zip(self._pieces, covered, strict=True):
             passed[piece] += max(0.0, 1.0 - share)
-        return Expected(uses, passed, rules)
+        return Expected(uses, passed, rules, junctures)
 
     def best(self) -> RclNode | None:
         """The most likely tree, over positions of pieces counted from 1; None where there is none."""
@@ -172,7 +194,7 @@ class TableChart:
         edge = scores[id(item)][1]
         parts = () if edge is None else edge[1]
         nodes = [node for part in parts for node in self._tree(part, scores)]
-        if edge is None or edge[2] is None or item.label == "command":
+        if edge is None or edge[2] is None or item.label in ("command", "framed"):
             return nodes
         return [RclNode(item.label, None, min(n.first for n in nodes), max(n.last for n in nodes), tuple(nodes))]
 
@@ -193,10 +215,18 @@ class TableChart:
             self._order.append(item)
         own = 0.0 if rule is None else self._weight(*rule)
         for before, behind in zip(parts, parts[1:], strict=False):
-            own += self._sums[behind.first] - self._sums[before.after]
+            own += self._passed_between(_place(label, behind), before.after, behind.first)
         item.edges.append((own, parts, rule))
         item.inside = _add(item.inside, own + sum(part.inside for part in parts))
         return item
+
+    def _passed_between(self, place: str, first: int, after: int) -> float:
+        """Log weight of passing over the pieces first .. after - 1 in a place between two parts."""
+        name = place, first, after
+        known = self._passing.get(name)
+        if known is None:
+            known = self._passing[name] = self._juncture(place, self._pieces[first:after])
+        return known
 
     def _build(self, uses: Sequence[WordUse]) -> None:
         leaves = [self._leaf(use) for use in uses]
@@ -232,6 +262,8 @@ class TableChart:
         mask = ANYTHING if self._scene is None else self._masks.get(use.concept, 0)
         if use.concept == REFERENCE and self._scene is not None:
             mask = 1 << self._scene.moved
+        if use.unseen and self._scene is not None:
+            mask = self._scene.unseen[use.concept.space]
         item = Item(label, use.first, use.after, mask, (use.concept,), use.weight, [], use)
         self._order.append(item)
         return item
@@ -292,14 +324,12 @@ class TableChart:
 
     def _placed(self, places: Sequence[Item]) -> list[Item]:
         """Places, told by one word or two."""
-        pairs = [(one, two) for one in places for two in places if self._follows(one, two) and one.use != two.use]
+        pairs = [(one, two) for one in places for two in places if self._follows(one, two) and one.key != two.key]
         found = []
         for parts in (*((each,) for each in places), *pairs):
             concepts = {part.use.concept for part in parts if part.use is not None}
             if self._scene is None:
                 stands, reached = ANYTHING, True
-            elif len(concepts) < len(parts):
-                continue
             else:
                 stands = sum(1 << i for i, at in enumerate(self._scene.places) if concepts <= at)
                 reached = concepts <= self._scene.goal
@@ -334,24 +364,25 @@ class TableChart:
             for kind, item in components
             if kind != "it"
         ]
+        partial = list({id(part): (part, kinds) for part, kinds in partial}.values())
         every = list(partial)
         for _ in range(3):
             grown: dict[int, tuple[Item, tuple[str, ...]]] = {}
             for each, kinds in partial:
                 for kind, item in components:
-                    early = (kind == "entity" and "it" in kinds) or (kind == "it" and "action" not in kinds)
-                    if early or kind in kinds or not self._follows(each, item):
-                        continue  # what is spoken of again was spoken of before, and then what is done with it
+                    if kind in kinds or not _may_follow(kinds, kind) or not self._follows(each, item):
+                        continue
                     which = each.key[1] if kind != "action" else self._started(kind, item)[1]
                     now = (*kinds, kind)
                     longer = self._put("part", (each, item), 0, (now, which))
                     grown[id(longer)] = longer, now
             partial = list(grown.values())
             every += partial
-        events = [self._event(each, kinds) for each, kinds in every if "action" in kinds]
-        firsts = _unique(e for e in events if e is not None and e.key in (("first",), ("any",)))
-        alone = _unique(e for e in events if e is not None and e.key in (("alone",), ("any",)))
-        seconds = _unique(e for e in events if e is not None and e.key == ("second",))
+        framed = [(self._framed(each, kinds), kinds) for each, kinds in every if "action" in kinds]
+        events = [event for each, kinds in framed if (event := self._event(each, kinds)) is not None]
+        firsts = _unique(event for event in events if event.key in (("first",), ("any",)))
+        alone = _unique(event for event in events if event.key in (("alone",), ("any",)))
+        seconds = _unique(event for event in events if event.key == ("second",))
         for event in alone:
             self._finish(event, "event")
         for one in firsts:
@@ -367,33 +398,33 @@ class TableChart:
         worth = {id(item): item.inside - self._sums[item.after] + self._sums[item.first] for item in items}
         return sorted(items, key=lambda item: -worth[id(item)])[:MOST_ITEMS]
 
-    def _started(self, kind: str, item: Item) -> tuple[tuple[str, ...], object]:
-        """Key of a part of an event: kinds of its components, and how its action is to the one shown."""
-        if kind != "action":
-            return (kind,), None
-        scene, use = self._scene, item.use
-        if scene is None or use is None:
-            return (kind,), "any"
-        if use.concept.number == scene.action:
-            return (kind,), "whole"
-        return (kind,), "piece"
+    def _started(self, kind: str, item: Item) -> tuple[tuple[str, ...], int | None]:
+        """Key of a part of an event: kinds of its components, and the number of its action."""
+        use = item.use
+        return (kind,), use.concept.number if kind == "action" and use is not None else None
 
-    def _event(self, part: Item, kinds: tuple[str, ...]) -> Item | None:
+    def _framed(self, part: Item, kinds: tuple[str, ...]) -> Item:
+        """Parts of an event, weighed by how often its action has a destination."""
+        number = part.key[1]
+        frame = f"{ACTION_SPACE}_{number}", ("destination",) if "destination" in kinds else (NOWHERE,)
+        return self._put("framed", (part,), 0, (number, kinds), frame)
+
+    def _event(self, framed: Item, kinds: tuple[str, ...]) -> Item | None:
         """An event, where its components make one."""
-        right = tuple("entity" if kind == "it" else kind for kind in kinds)
-        rule = "event", right
-        which = part.key[1]
+        rule = "event", tuple("entity" if kind == "it" else kind for kind in kinds)
+        whole = self._scene is None or framed.key[0] == self._scene.action
         if "entity" in kinds:
-            if "destination" not in kinds and "it" not in kinds and which in ("piece", "any"):
-                key = "any" if which == "any" else "first"
-            elif which in ("whole", "any"):
+            if "destination" not in kinds and "it" not in kinds and (self._scene is None or not whole):
+                key = "any" if self._scene is None else "first"
+            elif whole:
                 key = "alone"
             else:
                 return None
-            return self._put("event", (part,), 0, (key,), rule)
-        if "it" in kinds:
-            return self._put("event", (part,), 0, ("second",), rule)
-        return None
+        elif "it" in kinds:
+            key = "second"
+        else:
+            return None
+        return self._put("event", (framed,), 0, (key,), rule)
 
     def _finish(self, item: Item, label: str) -> None:
         """The whole command: what is before and behind is passed over."""
@@ -409,6 +440,21 @@ class TableChart:
 def element_of(concept: Concept) -> str:
     """RCL element of a leaf with a concept: its feature space, also of the sorts that words tell apart there."""
     return ELEMENTS.get(concept.space, concept.space.removeprefix(NAMED))
+
+
+def _may_follow(kinds: tuple[str, ...], kind: str) -> bool:
+    """Whether a component may stand in an event behind others: again is spoken only of what was spoken of before.
+
+    A thing is spoken of again once it is told what to do with it: "the cup, lift it", or in the second of two events.
+    """
+    if kind == "it":
+        return "action" in kinds and "entity" not in kinds[kinds.index("action") :]
+    return kind != "entity" or "it" not in kinds
+
+
+def _place(label: str, behind: Item) -> str:
+    """Name of the place before a part of an element, where words may be passed over."""
+    return f"{label} {behind.label}"
 
 
 def _unique(items: Iterable[Item]) -> list[Item]:

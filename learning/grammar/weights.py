@@ -37,6 +37,10 @@ PRIORS: dict[Feature, float] = {
     # An action is said with what it is done to.
     ("clause", "second", "ag"): -2.0,
     ("clause", "second", "ga"): -2.0,
+    # Who says "one" has spoken of a thing of its sort before.
+    ("reference", "to nothing"): -3.0,
+    # "Nearest" is said of something more often than of the nearest one.
+    ("used", "relation", "word"): -1.0,
     # One word names an action more often than several do.
     ("joined", "action"): -1.0,
     # What is in a place is on its ground too, but that says less.

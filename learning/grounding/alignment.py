@@ -6,11 +6,14 @@ what it had added. Rare concepts are smoothed towards how frequent words are, so
 by chance is not taken for its name.
 """
 
+import math
+import operator
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from learning.concept_id import Concept
+from learning.grounding.shares import shares_of
 from learning.saved_numbers import saved_count
 
 NOTHING = 1.5
@@ -21,6 +24,17 @@ KEPT = 0.05
 """Smallest count that is saved."""
 
 Meaning = Concept | None
+LEAST_TOLD = 0.02
+"""Least probability that something is told which no word seems to be about."""
+
+
+class Way(NamedTuple):
+    """One way of speaking of what was shown: what of the salient is told for certain in it, and what is not."""
+
+    told: frozenset[Concept] = frozenset()
+    untold: frozenset[Concept] = frozenset()
+
+
 Shares = tuple[tuple[float, ...], ...]
 """For each word, the probability that it was said of each meaning: of none, then of the salient concepts."""
 
@@ -36,13 +50,20 @@ class Alignment:
         self.heard = 0.0
         self.sentences = 0
 
-    def observe(self, words: Sequence[str], salient: Sequence[Concept], earlier: Shares | None = None) -> Shares:
+    def observe(
+        self,
+        words: Sequence[str],
+        salient: Sequence[Concept],
+        earlier: Shares | None = None,
+        ways: Sequence[Way] = (Way(),),
+    ) -> Shares:
         """Count one sentence.
 
         Args:
             words: The sentence.
             salient: What it may be about, in a fixed order.
             earlier: What this sentence had added when it was looked at last.
+            ways: Ways of speaking of it. How likely each is follows from all words of the sentence together.
 
         Returns:
             What it adds now.
@@ -55,14 +76,19 @@ class Alignment:
             self.sentences += 1
         else:
             self._add(words, meanings, earlier, -1.0)
-        shares = []
+        rows = []
         for word in words:
             row = self.joint[word]
             usual = SMOOTHING * self.word_counts[word] / self.heard
             likely = [(row.get(each, 0.0) + usual) / (self.totals.get(each, 0.0) + SMOOTHING) for each in meanings]
             likely[0] *= NOTHING
-            total = sum(likely)
-            shares.append(tuple(value / total for value in likely))
+            rows.append(likely)
+        spread = [_spread(rows, meanings, way) for way in ways]
+        odds = shares_of([score for score, _ in spread])
+        shares = [
+            tuple(sum(map(operator.mul, odds, column)) for column in zip(*of_word, strict=True))
+            for of_word in zip(*(table for _, table in spread), strict=True)
+        ]
         self._add(words, meanings, shares, 1.0)
         return tuple(shares)
 
@@ -111,6 +137,22 @@ class Alignment:
                 alignment.joint[word][meaning] = number
                 alignment.totals[meaning] += number
         return alignment
+
+
+def _spread(rows: Sequence[Sequence[float]], meanings: Sequence[Meaning], way: Way) -> tuple[float, list[list[float]]]:
+    """Log likelihood of a way of speaking, and of each word the probability of each meaning in it."""
+    open_ones = [each not in way.untold for each in meanings]
+    table = []
+    score = -len(rows) * math.log(NOTHING + sum(open_ones) - 1)
+    for likely in rows:
+        told = [value if is_open else 0.0 for value, is_open in zip(likely, open_ones, strict=True)]
+        total = sum(told)
+        score += math.log(total)
+        table.append([value / total for value in told])
+    for index, each in enumerate(meanings):
+        if each in way.told:
+            score += math.log(max(LEAST_TOLD, 1.0 - math.prod(1.0 - row[index] for row in table)))
+    return score, table
 
 
 def name_of(meaning: Meaning) -> str:

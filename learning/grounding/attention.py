@@ -4,7 +4,10 @@ A concept is salient when it is true of what moved, of where it went or came fro
 help to tell these from their likes: "nearest" and "leftmost" are salient only where several things look the same.
 """
 
+from collections.abc import Sequence
+
 from learning.concept_id import ACTION_SPACE, Concept
+from learning.grammar.actions import ActionTable
 from learning.grammar.board_elements import BoardElements
 from learning.grammar.innate import (
     ABOVE,
@@ -14,6 +17,7 @@ from learning.grammar.innate import (
     COUNTS,
     EDGE,
     EXTREMES,
+    IT,
     LARGEST_COUNT,
     NEAREST,
     NEAREST_ONE,
@@ -22,10 +26,10 @@ from learning.grammar.innate import (
     SIDES,
     SINGLE,
     UNIT,
-    WHOLE,
     WITHIN,
 )
 from learning.grammar.scene import bits
+from learning.grounding.alignment import Way
 from learning.grounding.word_uses import HEADING_SPACE
 from learning.percept import ShownAction
 from twin.board import CELLS
@@ -35,8 +39,14 @@ HEADINGS = tuple(Concept(HEADING_SPACE, number) for number in range(4))
 it apart because many a side is true of every scene, and few things move straight to one."""
 
 
-def salient_meanings(scene: BoardElements, shown: ShownAction) -> tuple[Concept, ...]:
-    """Give the concepts that a shown action draws attention to, in a fixed order."""
+def salient_meanings(scene: BoardElements, shown: ShownAction, ways: Sequence[Way] = (Way(),)) -> tuple[Concept, ...]:
+    """Give the concepts that a shown action draws attention to, in a fixed order.
+
+    Args:
+        scene: The scene before the action.
+        shown: The action.
+        ways: The ways of speaking of it.
+    """
     found = {Concept(ACTION_SPACE, number) for number in (shown.action, *shown.parts)}
     moved = shown.moved
     found |= scene.looks(moved)
@@ -49,7 +59,24 @@ def salient_meanings(scene: BoardElements, shown: ShownAction) -> tuple[Concept,
     found |= _inside(scene, 1 << scene.columns[moved])
     if shown.placement is not None:
         found |= _destination(scene, moved, shown.placement)
+    if any(IT in way.untold for way in ways):
+        found.add(IT)
     return tuple(sorted(found))
+
+
+def ways_of_speaking(shown: ShownAction, actions: ActionTable) -> tuple[Way, ...]:
+    """The ways of speaking of an action: as one, or of its parts one by one.
+
+    Who tells of the parts begins with the first, and speaks of the moved thing again with the second; who tells of the
+    whole does neither.
+    """
+    ways = []
+    whole = Concept(ACTION_SPACE, shown.action)
+    for pair, amounts_to in sorted(actions.composed.items()):
+        if amounts_to == shown.action:
+            first, second = (Concept(ACTION_SPACE, number) for number in pair)
+            ways += [Way(untold=frozenset((first, second, IT))), Way(frozenset((first,)), frozenset((whole,)))]
+    return tuple(ways) or (Way(),)
 
 
 def _destination(scene: BoardElements, moved: int, placement: int) -> set[Concept]:
@@ -57,8 +84,6 @@ def _destination(scene: BoardElements, moved: int, placement: int) -> set[Concep
     support = scene.support[placement]
     if support < 0:
         found.add(WITHIN)
-        if scene.held >> moved & 1:
-            found.add(WHOLE)
         found |= _inside(scene, 1 << placement)
         found |= _neighbours(scene, moved, placement)
     else:

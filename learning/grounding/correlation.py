@@ -79,8 +79,8 @@ class CorrelationMatrix:
             return 0.0
         n_ngram, n_concept = self.ngram_counts[ngram], self.concept_counts[concept]
         demos = self.row_demos(ngram)
-        of_ngram = _beyond(_wilson(together, n_ngram), n_concept / self.demos)
-        of_concept = _beyond(_wilson(together * self.demos / demos, n_concept), n_ngram / demos)
+        of_ngram = _beyond(wilson(together, n_ngram), n_concept / self.demos)
+        of_concept = _beyond(wilson(together * self.demos / demos, n_concept), n_ngram / demos)
         return max(of_ngram, of_concept) * self._learning_curve(n_ngram, n_concept)
 
     def strongest(self, ngram: str) -> float:
@@ -156,9 +156,11 @@ def _beyond(share: float, chance: float) -> float:
     return max(0.0, (share - chance) / (1.0 - chance)) if chance < 1.0 else 0.0
 
 
-def _wilson(hits: float, tries: float) -> float:
-    """Lower end of Wilson's score interval of a share, `CONFIDENCE` standard errors wide."""
+def wilson(hits: float, tries: float, errors: float = CONFIDENCE) -> float:
+    """Lower end of Wilson's score interval of a share, `errors` standard errors wide; 0 where nothing was tried."""
+    if tries <= 0.0:
+        return 0.0
     hits = min(hits, tries)
-    share, square = hits / tries, CONFIDENCE**2
-    spread = CONFIDENCE * math.sqrt(share * (1 - share) / tries + square / (4 * tries * tries))
+    share, square = hits / tries, errors**2
+    spread = errors * math.sqrt(share * (1 - share) / tries + square / (4 * tries * tries))
     return (share + square / (2 * tries) - spread) / (1 + square / tries)

@@ -16,8 +16,10 @@ LONGEST_AFFIX = 2
 """Letters of a joined part at most."""
 SHORTEST_STEM = 2
 """Letters of the word that it is joined to, at least."""
-LEAST_STEMS = 3
-"""A part must have been met with so many words that also stand alone."""
+LEAST_FORMS = 3
+"""A part must have been met in so many different words,"""
+LEAST_STEMS = 2
+"""of so many that also stand alone: one with two endings is joined twice."""
 ESTABLISHED = 4
 """How often a word must have been heard to count as one that stands alone, or to be what another is a slip for."""
 SLIP = 2
@@ -32,6 +34,7 @@ class JoinedWords:
     def __init__(self) -> None:
         """Start without words."""
         self.counts: defaultdict[str, float] = defaultdict(float)
+        self._total = 0.0
         self._dirty = True
         self._beginnings: frozenset[str] = frozenset()
         self._endings: frozenset[str] = frozenset()
@@ -41,6 +44,7 @@ class JoinedWords:
         """Count the words of a sentence."""
         for word in words:
             self.counts[word] += 1
+            self._total += 1
         self._dirty = True
 
     def pieces(self, word: str) -> tuple[str, ...]:
@@ -53,6 +57,11 @@ class JoinedWords:
         parts = [(piece, index) for index, word in enumerate(words) for piece in self.pieces(word)]
         return tuple(piece for piece, _ in parts), tuple(index for _, index in parts)
 
+    @property
+    def total(self) -> float:
+        """How many words were heard."""
+        return self._total
+
     def to_json(self) -> dict[str, int]:
         """Word to count."""
         return {word: int(count) for word, count in sorted(self.counts.items())}
@@ -63,15 +72,18 @@ class JoinedWords:
         joined = cls()
         for word, count in data.items():
             joined.counts[word] = saved_count(count, f"count of '{word}'", least=1)
+        joined._total = sum(joined.counts.values())
         return joined
 
     def _refresh(self) -> None:
         if not self._dirty:
             return
         self._dirty = False
-        self._endings = frozenset(_usual((word[-n:], word[:-n]) for word, n in self._cuts() if self._alone(word[:-n])))
+        self._endings = frozenset(
+            _usual((word[-n:], word[:-n], word) for word, n in self._cuts() if self._alone(word[:-n]))
+        )
         self._beginnings = frozenset(
-            _usual((word[:n], stem) for word, n in self._cuts() if (stem := self._stem_of(word[n:])))
+            _usual((word[:n], stem, word) for word, n in self._cuts() if (stem := self._stem_of(word[n:])))
         )
         self._pieces.cache_clear()
 
@@ -120,12 +132,14 @@ class JoinedWords:
         return count if count > self.counts.get(word, 0.0) else 0.0
 
 
-def _usual(parts: Iterable[tuple[str, str]]) -> set[str]:
-    """Parts that were met with enough different stems."""
+def _usual(parts: Iterable[tuple[str, str, str]]) -> set[str]:
+    """Parts that were met in enough words, of enough stems: each with its stem and the word that both make."""
     stems: defaultdict[str, set[str]] = defaultdict(set)
-    for part, stem in parts:
+    words: defaultdict[str, set[str]] = defaultdict(set)
+    for part, stem, word in parts:
         stems[part].add(stem)
-    return {part for part, met in stems.items() if len(met) >= LEAST_STEMS}
+        words[part].add(word)
+    return {part for part, met in stems.items() if len(met) >= LEAST_STEMS and len(words[part]) >= LEAST_FORMS}
 
 
 def _slips(word: str) -> Iterator[str]:

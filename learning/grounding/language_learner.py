@@ -15,7 +15,7 @@ from learning.grammar.scene import SceneSets
 from learning.grounding.correlation import CorrelationMatrix
 from learning.grounding.grounding import Grounding
 from learning.grounding.hypotheses import supposed
-from learning.grounding.integer_program import Pair
+from learning.grounding.integer_program import EPSILON, Pair
 from learning.grounding.lexicon import lexical_entries
 from learning.grounding.ngrams import ngrams_of
 from learning.grounding.salience import focal_concepts, salient_concepts
@@ -59,6 +59,7 @@ class LanguageLearner:
 
     def __init__(self) -> None:
         """Start knowing nothing."""
+        self.epsilon = EPSILON
         self.correlation = CorrelationMatrix()
         self.focus = CorrelationMatrix()
         self.grounding = Grounding()
@@ -102,7 +103,7 @@ class LanguageLearner:
         """Select (4.2) and filter (4.3 to 4.6) grounding hypotheses for the n-grams and concepts at hand."""
         strengths = {(ngram, concept): self.strength(ngram, concept) for ngram in ngrams for concept in sorted(salient)}
         strengths = {pair: k if k >= LEAST_STRENGTH else 0.0 for pair, k in strengths.items()}
-        return supposed(strengths)
+        return supposed(strengths, self.epsilon)
 
     def log_weight(self, reading: Reading) -> float:
         """Log probability of a reading, not normalised, with the preference for readings that leave little open."""

@@ -24,6 +24,7 @@ class Episode:
         salient: What was salient in it.
         shares: What the sentence added to the alignment when it was looked at last.
         grounded: What it added to Φ when it was read last: word, meaning, amount.
+        counted: Whether its rules were counted.
     """
 
     words: tuple[str, ...]
@@ -32,6 +33,7 @@ class Episode:
     salient: tuple[Concept, ...]
     shares: Shares
     grounded: tuple[tuple[str, Concept | None, float], ...] = ()
+    counted: bool = False
 
 
 class Memory:

@@ -54,8 +54,12 @@ class Namings:
         return best if count > MAJORITY * votes.total() else None
 
     def to_json(self) -> dict[str, Any]:
-        """Names with their counts, and the counts of pairs."""
-        pairs = {name: dict(sorted(row.items())) for name, row in sorted(self.together.items()) if row}
+        """Names with their counts, and those of pairs that were heard of one thing more than once."""
+        pairs = {
+            name: {other: n for other, n in sorted(row.items()) if name < other and n >= LEAST_TOGETHER}
+            for name, row in sorted(self.together.items())
+        }
+        pairs = {name: row for name, row in pairs.items() if row}
         return {"counts": dict(self.counts), "together": pairs, "kinds": dict(self.kinds)}
 
     @classmethod
@@ -66,7 +70,8 @@ class Namings:
             namings.counts[name] = int(saved_count(count, f"count of '{name}'", least=1))
         for name, row in data["together"].items():
             for other, count in row.items():
-                namings.together[name][other] = int(saved_count(count, f"count of '{name}' with '{other}'"))
+                both = int(saved_count(count, f"count of '{name}' with '{other}'"))
+                namings.together[name][other] = namings.together[other][name] = both
         namings.kinds = {str(name): str(kind) for name, kind in data["kinds"].items()}
         return namings
 

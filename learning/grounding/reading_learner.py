@@ -23,11 +23,11 @@ from learning.grammar.clauses import CommandReading, read_clauses
 from learning.grammar.description import Description, Sense
 from learning.grammar.pcfg import Pcfg
 from learning.grammar.phrase import Feature
-from learning.grammar.phrase_chart import PhraseChart
+from learning.grammar.phrase_chart import IN_VAIN, PhraseChart
 from learning.grammar.reading_tree import tree_of
 from learning.grammar.weights import Weights
 from learning.grounding.alignment import Alignment
-from learning.grounding.attention import salient_meanings
+from learning.grounding.attention import salient_meanings, ways_of_speaking
 from learning.grounding.grounding import Grounding
 from learning.grounding.memory import LARGEST, Episode, Memory
 from learning.grounding.shares import shares_of
@@ -50,6 +50,8 @@ FRESH_STARTS = (LISTENING, 128, 512, LARGEST)
 while words could mean nearly anything would mislead for ever."""
 SWEEPS = 4
 """How often the memory is aligned again before it is read afresh."""
+Grounded = tuple[tuple[str, Concept | None, float], ...]
+IDLE_SPACES = ("rank", "side")
 LEAST_SHARE = 0.02
 """Readings whose share of the credit is smaller are not counted."""
 
@@ -86,6 +88,15 @@ class ReadingLearner:
         self.sentences = 0
         self._uses = UseTable(self.alignment, self.grounding, self.weights)
 
+    @property
+    def epsilon(self) -> float:
+        """Least probability of a meaning that is tried, which keeps groundings sparse as ε does in the thesis."""
+        return self._uses.least_probability
+
+    @epsilon.setter
+    def epsilon(self, value: float) -> None:
+        self._uses.least_probability = value
+
     def knows(self, word: str) -> bool:
         """Whether a word was ever heard."""
         return self.alignment.word_counts.get(word, 0.0) > 0
@@ -100,11 +111,20 @@ class ReadingLearner:
         scene: BoardElements,
         actions: ActionTable,
         senses: dict[Description, list[Sense]] | None = None,
+        open_minded: bool = False,
     ) -> Readings:
-        """Read a sentence in a scene; no readings when it has too many words."""
+        """Read a sentence in a scene; no readings when it has too many words.
+
+        Args:
+            words: The sentence.
+            scene: The scene.
+            actions: The known actions.
+            senses: Senses of descriptions in this scene known from other sentences about it; added to.
+            open_minded: Whether any word that has no plain meaning may be an action.
+        """
         if len(words) > LONGEST:
             return Readings((), ())
-        found = self._uses.of(words, actions.sorts())
+        found = self._uses.of(words, actions.sorts(), open_minded)
         if len(found.kept) > MOST_WORDS:
             return Readings((), found.kept)
         weight = self.weights.of
@@ -136,10 +156,11 @@ class ReadingLearner:
         if not words or len(words) > LONGEST:
             return False
         scene = BoardElements(arrangement, bearing)
-        salient = salient_meanings(scene, shown)
-        episode = Episode(words, arrangement, shown, salient, self.alignment.observe(words, salient))
+        ways = ways_of_speaking(shown, actions)
+        salient = salient_meanings(scene, shown, ways)
+        episode = Episode(words, arrangement, shown, salient, self.alignment.observe(words, salient, None, ways))
         for other in self.memory.recall(REALIGNED, rng):
-            other.shares = self.alignment.observe(other.words, other.salient, other.shares)
+            self._align(other, actions)
         self.memory.keep(episode)
         self.sentences += 1
         if self.sentences < LISTENING:
@@ -156,25 +177,33 @@ class ReadingLearner:
         episodes = self.memory.episodes
         for _ in range(SWEEPS):
             for episode in episodes:
-                episode.shares = self.alignment.observe(episode.words, episode.salient, episode.shares)
+                self._align(episode, actions)
         self.grounding.clear()
         self.weights.clear()
         self.grammar.clear()
         for episode in episodes:
             episode.grounded = ()
+            episode.counted = False
         for index in rng.permutation(len(episodes)):
             episode = episodes[int(index)]
             self._credit(episode, BoardElements(episode.arrangement, bearing), actions)
 
+    def _align(self, episode: Episode, actions: ActionTable) -> None:
+        """Align an earlier sentence anew."""
+        ways = ways_of_speaking(episode.shown, actions)
+        episode.shares = self.alignment.observe(episode.words, episode.salient, episode.shares, ways)
+
     def _credit(self, episode: Episode, scene: BoardElements, actions: ActionTable) -> bool:
         words, shown = episode.words, episode.shown
         found = self.read(words, scene, actions)
-        right = [reading for reading in found.readings if reading.does(shown.moved, shown.placement)]
+        right, credit = _right(found, shown)
+        if not right:
+            found = self.read(words, scene, actions, open_minded=True)
+            right, credit = _right(found, shown)
         if not right:
             return False
         kept_words = tuple(words[position] for position in found.kept)
         gradient: defaultdict[Feature, float] = defaultdict(float)
-        credit = shares_of([reading.score - math.log(reading.choices) for reading in right])
         for reading, share in zip(right, credit, strict=True):
             _add_features(gradient, kept_words, reading, share)
         for reading, share in zip(found.readings, found.shares(), strict=True):
@@ -191,15 +220,8 @@ class ReadingLearner:
         What the episode had added to Φ when it was read last is taken back first.
         """
         words = episode.words
-        grounded: list[tuple[str, Concept | None, float]] = [
-            (words[position], None, 1.0) for position in sorted(set(range(len(words))).difference(kept))
-        ]
         for reading, share in zip(readings, credit, strict=True):
-            if share < LEAST_SHARE:
-                continue
-            meant = dict(_meant(reading))
-            grounded += [(words[original], meant.get(position), share) for position, original in enumerate(kept)]
-            if episode.grounded:
+            if share < LEAST_SHARE or episode.counted:
                 continue
             tree = tree_of(reading, kept)
             self.grammar.add_rule("command", (tree.label,), share)
@@ -208,11 +230,12 @@ class ReadingLearner:
             for node in tree.nodes():
                 if node.concept is not None:
                     self.grammar.add_terminal(node.label, words[node.first - 1], share)
+        episode.counted = True
         for word, meaning, amount in episode.grounded:
             self.grounding.add(word, meaning, -amount)
-        for word, meaning, amount in grounded:
+        episode.grounded = _grounded(words, kept, readings, credit)
+        for word, meaning, amount in episode.grounded:
             self.grounding.add(word, meaning, amount)
-        episode.grounded = tuple(grounded)
 
     def speaks_of(self, concept: Concept) -> bool:
         """Whether anything was learned of a concept."""
@@ -256,12 +279,46 @@ class ReadingLearner:
         return learner
 
 
+def _right(found: Readings, shown: ShownAction) -> tuple[list[CommandReading], list[float]]:
+    """The readings that do what was shown, and their shares of the credit."""
+    right = [reading for reading in found.readings if reading.does(shown.moved, shown.placement)]
+    return right, shares_of([reading.score - math.log(reading.choices) for reading in right])
+
+
+def _grounded(
+    words: tuple[str, ...], kept: tuple[int, ...], readings: list[CommandReading], credit: list[float]
+) -> Grounded:
+    """Which words were used for what, and which were passed over, by readings of some credit."""
+    grounded: list[tuple[str, Concept | None, float]] = [
+        (words[position], None, 1.0) for position in sorted(set(range(len(words))).difference(kept))
+    ]
+    for reading, share in zip(readings, credit, strict=True):
+        if share >= LEAST_SHARE:
+            meant = dict(_told(reading))
+            grounded += [(words[original], meant.get(position), share) for position, original in enumerate(kept)]
+    return tuple(grounded)
+
+
 def _meant(reading: CommandReading) -> Iterator[tuple[int, Concept]]:
     for phrase in reading.phrases():
         for leaf in phrase.leaves():
             if leaf.concept is not None:
                 for position in leaf.used:
                     yield position, leaf.concept
+
+
+def _told(reading: CommandReading) -> Iterator[tuple[int, Concept]]:
+    """What words meant, without ranks and sides that ruled nothing out: who says such a word may say nothing by it."""
+    idle = {
+        position
+        for phrase in reading.phrases()
+        for part in phrase.walk()
+        if IN_VAIN in part.features
+        for child in part.children
+        if child.concept is not None and child.concept.space in IDLE_SPACES
+        for position in child.used
+    }
+    return ((position, concept) for position, concept in _meant(reading) if position not in idle)
 
 
 def _add_features(

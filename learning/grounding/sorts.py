@@ -22,7 +22,7 @@ SHRINKAGE = 0.1
 """Share of the mean variance, the same in all directions, in the covariance of a sort."""
 PRIOR_SIGHTINGS = 4.0
 """Sightings that the shrunk part is worth, beside."""
-DIGITS = 5
+DIGITS = 4
 
 
 class Sorts:

@@ -8,14 +8,15 @@ import numpy as np
 from learning.concept_id import Concept
 from learning.concepts.concept_spaces import ConceptSpaces
 from learning.grammar.rcl import RclNode
+from learning.grounding.kind_sizes import KindSizes
 from learning.grounding.namings import Namings
 from learning.grounding.scripts import script_of
 from learning.grounding.sorts import Sorts
-from learning.grounding.table_scene import RestingPlaces, TableRecord, TableScene, table_scene
+from learning.grounding.table_scene import RestingPlaces, TableRecord, TableScene, kinds_and_sizes, table_scene
 from learning.grounding.tongue import ANY, Tongue
 from learning.saved_numbers import saved_count
 
-SORTED = ("colour", "shape", "size")
+SORTED = ("colour", "shape")
 """Spaces of looks in which words help to tell sorts of things apart."""
 
 
@@ -27,6 +28,7 @@ class TableLanguage:
         resting: Where things rest, which is what far, near, left and right are measured by.
         namings: Space of looks to what things were called there.
         sorts: Space of looks to the sorts that words tell apart there.
+        sizes: How large things of each kind are.
     """
 
     def __init__(self) -> None:
@@ -35,6 +37,7 @@ class TableLanguage:
         self.resting = RestingPlaces()
         self.namings = {space: Namings() for space in SORTED}
         self.sorts = {space: Sorts() for space in SORTED}
+        self.sizes = KindSizes()
 
     def learn(self, sentences: Iterable[tuple[str, ...]], record: TableRecord, spaces: ConceptSpaces) -> int:
         """Learn from the sentences about one demo; returns how many could be read so that they do what was shown.
@@ -48,7 +51,9 @@ class TableLanguage:
             self.resting.add(place)
         sentences = list(sentences)
         self._sort(sentences, record)
-        scene = table_scene(record, spaces, self.resting, self.sorts)
+        for kind, size in kinds_and_sizes(record, spaces, self.sorts):
+            self.sizes.see(kind, size)
+        scene = self.scene(record, spaces)
         by_script: dict[str, list[tuple[str, ...]]] = {}
         for words in sentences:
             by_script.setdefault(script_of(words), []).append(words)
@@ -56,6 +61,10 @@ class TableLanguage:
             self.tongues.setdefault(script, Tongue()).learn(said, record, scene)
             for script, said in sorted(by_script.items())
         )
+
+    def scene(self, record: TableRecord, spaces: ConceptSpaces) -> TableScene:
+        """What a record shows, in symbols, by all that is known now."""
+        return table_scene(record, spaces, self.resting, self.sorts, self.sizes)
 
     def _sort(self, sentences: Iterable[tuple[str, ...]], record: TableRecord) -> None:
         """Learn what sort of thing the one in hand is, from what it is called."""
@@ -70,7 +79,7 @@ class TableLanguage:
     def refresh(self, spaces: ConceptSpaces) -> None:
         """See all scenes in memory with the concepts of today."""
         for tongue in self.tongues.values():
-            tongue.refresh(lambda record: table_scene(record, spaces, self.resting, self.sorts))
+            tongue.refresh(lambda record: self.scene(record, spaces))
 
     def settle(self, rounds: int = 1) -> None:
         """Read all sentences in memory again, so many times."""
@@ -97,6 +106,7 @@ class TableLanguage:
 
     def rename(self, old: Concept, new: Concept) -> None:
         """Carry over all that was learned of a concept that turned out to be another."""
+        self.sizes.rename(old, new)
         for tongue in self.tongues.values():
             tongue.rename(old, new)
 
@@ -115,6 +125,7 @@ class TableLanguage:
             "resting": [resting.count, resting.mean.tolist(), resting.square.tolist()],
             "namings": {space: namings.to_json() for space, namings in sorted(self.namings.items())},
             "sorts": {space: sorts.to_json() for space, sorts in sorted(self.sorts.items())},
+            "sizes": self.sizes.to_json(),
             "tongues": {script: tongue.to_json() for script, tongue in sorted(self.tongues.items())},
         }
 
@@ -130,5 +141,6 @@ class TableLanguage:
         )
         language.namings = {space: Namings.from_json(data["namings"][space]) for space in SORTED}
         language.sorts = {space: Sorts.from_json(data["sorts"][space]) for space in SORTED}
+        language.sizes = KindSizes.from_json(data.get("sizes", {}))  # older files hold none
         language.tongues = {script: Tongue.from_json(tongue) for script, tongue in data["tongues"].items()}
         return language

@@ -16,6 +16,7 @@ from learning.concept_id import ACTION_SPACE, Concept
 from learning.concepts.concept_spaces import ConceptSpaces
 from learning.concepts.table_spaces import ADJACENT
 from learning.graphs.action_graphlet import ActionGraphlet
+from learning.grounding.kind_sizes import KindSizes
 from learning.grounding.sorts import Sorts
 from learning.percept import NO_CONCEPT
 from learning.perception.observation import Observation
@@ -29,11 +30,18 @@ MIDDLE = Concept(PLACE_SPACE, 4)
 """In the middle in both directions."""
 NAMED = "named "
 """Before the name of a space of looks: the sorts that words tell apart there."""
+SIZE_SPACE = "size"
+"""Nobody speaks of how large a thing is by itself, but of how large it is among its like (`KindSizes`)."""
 NEAR_SPACE = "near"
 BESIDE = Concept(NEAR_SPACE, 0)
 """Close to another thing, on whichever side."""
 CLOSE = 0.2
 """So close are things that are beside each other [m]."""
+SUPPORT_SPACE = "support"
+OVER = Concept(SUPPORT_SPACE, 0)
+"""On another thing, or in it: over its footprint, and higher up or smaller. Such things are not beside one another."""
+FOOTPRINT_ERROR = 0.01
+"""How wrong the middle of a thing may be that is partly hidden by another [m]."""
 ASIDE = 0.5
 """A thing is on a side when it is so many standard deviations of all resting places off their mean,"""
 AMID = 0.6
@@ -86,6 +94,8 @@ class TableScene:
         parts: Numbers of the known actions that it contains, itself included.
         goal: Place concepts of where the object ended; none where it was not brought anywhere.
         goal_relations: Other object to the concepts of how the moved one is to it in the end.
+        ground: The other object that it ended on, in or nearest to; None where it ended near none.
+        unseen: Space of looks to the objects, as a bit mask, of which it was not seen what they are like there.
     """
 
     looks: tuple[frozenset[Concept], ...]
@@ -96,12 +106,14 @@ class TableScene:
     parts: tuple[int, ...]
     goal: frozenset[Concept]
     goal_relations: Mapping[int, frozenset[Concept]]
+    ground: int | None
+    unseen: Mapping[str, int]
 
     def salient(self) -> frozenset[Concept]:
         """Concepts that the action draws attention to: of the moved thing, of where it went and what is there."""
         found = {Concept(ACTION_SPACE, self.action), *self.looks[self.moved], *self.goal}
-        for other, concepts in self.goal_relations.items():
-            found |= concepts | self.looks[other]
+        if self.ground is not None:
+            found |= self.goal_relations[self.ground] | self.looks[self.ground]
         return frozenset(found)
 
     def masks(self) -> dict[Concept, int]:
@@ -126,6 +138,8 @@ class TableRecord:
         brought: Whether it ended at rest in another place.
         action: Number of the action.
         parts: Numbers of the known actions that it contains.
+        sides: Length, width and height of each object, (N, 3) [m]; NaN where they were never measured. Without
+            them nothing is known to be over another.
     """
 
     looks: Mapping[str, FloatArray]
@@ -136,6 +150,11 @@ class TableRecord:
     brought: bool
     action: int
     parts: tuple[int, ...]
+    sides: FloatArray | None = None
+
+    def pair(self, i: int, j: int) -> FloatArray | None:
+        """Sides of two objects, (2, 3) [m]."""
+        return None if self.sides is None else self.sides[[i, j]]
 
     def resting(self) -> Iterator[FloatArray]:
         """Places where things rest, each (3,) [m]."""
@@ -167,11 +186,16 @@ def table_record(
         brought=not end.raised and not end.holds and end.object_location != begin.object_location,
         action=action,
         parts=tuple(sorted({action, *spaces.actions.parts_of(graphlet)})),
+        sides=sides_of(observation),
     )
 
 
 def table_scene(
-    record: TableRecord, spaces: ConceptSpaces, resting: RestingPlaces, sorts: Mapping[str, Sorts]
+    record: TableRecord,
+    spaces: ConceptSpaces,
+    resting: RestingPlaces,
+    sorts: Mapping[str, Sorts],
+    sizes: KindSizes | None = None,
 ) -> TableScene:
     """Put a demo at a table into symbols.
 
@@ -180,15 +204,30 @@ def table_scene(
         spaces: Concepts as they are now.
         resting: Where things rest.
         sorts: Space of looks to the sorts that words tell apart there.
+        sizes: How large things of each kind are; without it nothing is small or large among its like.
     """
     first, last, moved = record.first, record.last, record.moved
     others = [index for index in range(len(first)) if index != moved]
-    before = {(i, j): _relation(first[i] - first[j], spaces) for i in range(len(first)) for j in others if i != j}
-    after = {j: _relation(last[moved] - last[j], spaces) for j in others} if record.brought else {}
+    before = {
+        (i, j): relation_of(first[i] - first[j], spaces, record.pair(i, j))
+        for i in range(len(first))
+        for j in others
+        if i != j
+    }
+    after = (
+        {j: relation_of(last[moved] - last[j], spaces, record.pair(moved, j)) for j in others} if record.brought else {}
+    )
+    near = {other: concepts for other, concepts in after.items() if concepts}
+    away = {other: float(np.linalg.norm(last[moved] - last[other])) for other in near}
     numbers = _all_numbers(record.looks, spaces, sorts)
     return TableScene(
         looks=tuple(
-            frozenset(Concept(name, int(row[index])) for name, row in numbers.items() if row[index] != NO_CONCEPT)
+            frozenset(
+                Concept(name, int(row[index]))
+                for name, row in numbers.items()
+                if row[index] != NO_CONCEPT and name != SIZE_SPACE
+            )
+            | _among_kind(index, numbers, record.looks, sizes)
             for index in range(len(first))
         ),
         places=tuple(
@@ -199,8 +238,40 @@ def table_scene(
         action=spaces.actions.resolve(record.action),
         parts=tuple(sorted({spaces.actions.resolve(part) for part in record.parts})),
         goal=resting.at(last[moved]) if record.brought else frozenset(),
-        goal_relations={other: concepts for other, concepts in after.items() if concepts},
+        goal_relations=near,
+        unseen=_unseen(numbers),
+        ground=min(near, key=lambda other: (OVER not in near[other], away[other]), default=None),
     )
+
+
+def kinds_and_sizes(
+    record: TableRecord, spaces: ConceptSpaces, sorts: Mapping[str, Sorts]
+) -> Iterator[tuple[Concept, float]]:
+    """Kind and size of each object of which both are known: concept of its shape, logarithm of its size."""
+    numbers = _all_numbers(record.looks, spaces, sorts)
+    for index in range(len(record.first)):
+        found = _kind_and_size(index, numbers, record.looks)
+        if found is not None:
+            yield found
+
+
+def _kind_and_size(
+    index: int, numbers: Mapping[str, NDArray[np.int64]], looks: Mapping[str, FloatArray]
+) -> tuple[Concept, float] | None:
+    size = float(looks[SIZE_SPACE][index, 0]) if SIZE_SPACE in looks else np.nan
+    for name in ("shape", f"{NAMED}shape"):
+        if name in numbers and numbers[name][index] != NO_CONCEPT and np.isfinite(size):
+            return Concept(name, int(numbers[name][index])), size
+    return None
+
+
+def _among_kind(
+    index: int, numbers: Mapping[str, NDArray[np.int64]], looks: Mapping[str, FloatArray], sizes: KindSizes | None
+) -> frozenset[Concept]:
+    """Whether an object is small or large among its like."""
+    known = None if sizes is None else _kind_and_size(index, numbers, looks)
+    told = None if known is None or sizes is None else sizes.among(*known)
+    return frozenset() if told is None else frozenset((told,))
 
 
 def looks_of(
@@ -221,6 +292,17 @@ def _all_numbers(
             homes = _numbers(np.array(sorts[name].means), name, spaces)
             found[f"{NAMED}{name}"] = sorts[name].told_apart(values, found[name], homes)
             found[name] = np.where(found[f"{NAMED}{name}"] == NO_CONCEPT, found[name], NO_CONCEPT)
+    return found
+
+
+def _unseen(numbers: Mapping[str, NDArray[np.int64]]) -> dict[str, int]:
+    """Space of looks, also of sorts, to the objects that have no concept there, as a bit mask; only spaces with any."""
+    found = {}
+    for name, row in numbers.items():
+        other = numbers.get(f"{NAMED}{name.removeprefix(NAMED)}", row)
+        missing = (numbers[name.removeprefix(NAMED)] == NO_CONCEPT) & (other == NO_CONCEPT)
+        if np.any(missing):
+            found[name] = sum(1 << int(index) for index in np.flatnonzero(missing))
     return found
 
 
@@ -250,11 +332,46 @@ def measured_looks(observation: Observation, spaces: ConceptSpaces) -> Iterator[
         yield name, np.divide(total, times, out=np.full_like(total, np.nan), where=times > 0)
 
 
-def _relation(offset: FloatArray, spaces: ConceptSpaces) -> frozenset[Concept]:
-    """Direction concept of an offset (3,) [m], and whether it is a short one; none for things far apart."""
-    if np.linalg.norm(offset) > ADJACENT:
+def sides_of(observation: Observation) -> FloatArray:
+    """Length, width and height of each object, (N, 3) [m]: medians of when it was seen."""
+    count = len(observation.object_ids)
+    if observation.extent is None or not len(observation.extent):
+        return np.full((count, 3), np.nan)
+    seen = np.isfinite(observation.extent)
+    if observation.visible is not None:
+        visible = seen & observation.visible[..., None]
+        seen = np.where(np.any(visible, axis=0), visible, seen)
+    sides = np.full((count, 3), np.nan)
+    for index in np.flatnonzero(np.any(seen, axis=(0, 2))):
+        frames = np.all(seen[:, index], axis=1)
+        if np.any(frames):
+            sides[index] = np.median(observation.extent[frames, index], axis=0)
+    return sides
+
+
+def relation_of(offset: FloatArray, spaces: ConceptSpaces, sides: FloatArray | None = None) -> frozenset[Concept]:
+    """Relation concepts of one thing to another.
+
+    Args:
+        offset: From the other to the one, (3,) [m].
+        spaces: Concepts.
+        sides: Of the one and of the other, (2, 3) [m]; without them nothing is over another.
+
+    Returns:
+        That it is over the other; else its direction, and whether it is close; none for things far apart.
+    """
+    length = float(np.linalg.norm(offset))
+    if length > ADJACENT:
         return frozenset()
-    beside = {BESIDE} if np.linalg.norm(offset) <= CLOSE else set()
+    if sides is not None and _is_over(offset, sides[0], sides[1]):
+        return frozenset((OVER,))
+    beside = {BESIDE} if length <= CLOSE else set()
     if not spaces.mixtures["direction"].components:
         return frozenset(beside)
     return frozenset((*beside, Concept("direction", int(spaces.predicates("direction", offset[None])[0]))))
+
+
+def _is_over(offset: FloatArray, one: FloatArray, other: FloatArray) -> bool:
+    """Whether a thing with sides `one` (3,) is on or in another, at an offset (3,) from it [m]."""
+    inside = float(np.hypot(offset[0], offset[1])) <= 0.5 * float(other[1]) + FOOTPRINT_ERROR
+    return inside and bool(offset[2] > 0.5 * other[2] or one[1] < other[1])

@@ -11,20 +11,21 @@ function words come out without a meaning (habituation, 4.9.4).
 import math
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from learning.concept_id import ACTION_SPACE, REFERENCE, Concept
 from learning.grammar.pcfg import Pcfg
 from learning.grammar.rcl import RclNode
-from learning.grammar.table_chart import Expected, TableChart, WordUse
-from learning.grounding.correlation import CorrelationMatrix
+from learning.grammar.table_chart import END, Expected, Rule, TableChart, WordUse
+from learning.grounding.correlation import CorrelationMatrix, wilson
 from learning.grounding.grounding import Grounding
 from learning.grounding.hypotheses import supposed
 from learning.grounding.integer_program import Pair
 from learning.grounding.joined_words import JoinedWords
 from learning.grounding.ngrams import ngrams_of, parts_of
-from learning.grounding.table_scene import BESIDE, NAMED, TableRecord, TableScene
+from learning.grounding.saved_correlation import packed, unpacked
+from learning.grounding.table_scene import BESIDE, NAMED, OVER, TableRecord, TableScene
 
 MEMORY = 1200
 """Sentences that are kept with their scenes to be read again."""
@@ -44,6 +45,8 @@ POSSIBLE = 12
 """Rules of an element that are possible, used or not."""
 PASSED = math.log(0.4)
 """Log probability that one more word is passed over before the next that means something."""
+PRIOR_JUNCTURES = 4.0
+"""How many words passed over between two parts what is passed over anywhere is worth."""
 LEAST_USE = 0.3
 """Readings that a meaning needs to be tried where it is no hypothesis."""
 LEAST_LIFT = 1.5
@@ -58,6 +61,8 @@ FIRST_SENTENCES = 30
 """Sentences before it is known what is usual."""
 MEASURED = 0.3
 """An n-gram that goes with a concept so strongly has no meaning of another kind."""
+RAREST = 0.05
+"""No concept tells more than one that is salient so seldom."""
 LEAST_RULE = 0.02
 """No rule is less likely: what was learned first must not shut out what comes later."""
 OF_ACTIONS = 0.5
@@ -70,15 +75,19 @@ ANY = "any "
 """Before the name of a feature space: the pseudo-concept in K that anything of that space is salient."""
 UNMEASURED = frozenset((REFERENCE, BESIDE))
 """Kinds of meaning that are always at hand, so that K says nothing of them; only readings do."""
-RELATING = 0.01
+RELATING = {REFERENCE: 0.3, BESIDE: 0.05}
 """Probability of any one word to have such a meaning, until it had."""
+UNSEEN = math.log(0.1)
+"""Log probability that a thing of which it was not seen what it is like is what a word says"""
+SURELY, MAINLY = 3.0, 0.5
+"""that was read so often, and so much of all times, as that."""
 LONGEST_SENTENCE = 60
 """Longer sentences are not read."""
 LEAST_MEANING = 0.12
 """A meaning that an n-gram has less often is none,"""
 LEAST_SPACE = 0.2
 """nor one in a feature space that it is read in less often,"""
-LEAST_HEARD = 1.5
+LEAST_HEARD = 0.9
 """nor one that was read less often."""
 
 
@@ -108,9 +117,11 @@ class Tongue:
         self.correlation = CorrelationMatrix()
         self.grounding = Grounding()
         self.grammar = Pcfg()
+        self.junctures = Pcfg()
         self._memory: deque[Heard] = deque()
         self._hypotheses: dict[str, dict[Concept, float]] = {}
         self._weights: dict[tuple[str, tuple[str, ...]], float] = {}
+        self._kinds: dict[Concept, tuple[float, float]] = {}
 
     def learn(self, sentences: Iterable[tuple[str, ...]], record: TableRecord, scene: TableScene) -> int:
         """Learn from all sentences about one demo; returns how many could be read so that they do what was shown."""
@@ -206,28 +217,36 @@ class Tongue:
         """Carry over all that was learned of a concept that turned out to be another."""
         self.correlation.rename(old, new)
         self.grounding.rename(old, new)
+        for right, count in list(self.grammar.rules.get(str(old), {}).items()):
+            self.grammar.add_rule(str(new), right, count)
+            self.grammar.add_rule(str(old), right, -count)
         for each in self._memory:
             if each.counted is not None:
                 uses: dict[tuple[str, Concept], float] = {}
                 for (ngram, concept), share in each.counted.uses.items():
                     pair = ngram, new if concept == old else concept
                     uses[pair] = uses.get(pair, 0.0) + share
-                each.counted = Expected(uses, each.counted.passed, each.counted.rules)
+                rules: dict[Rule, float] = {}
+                for (left, right), share in each.counted.rules.items():
+                    rule = str(new) if left == str(old) else left, right
+                    rules[rule] = rules.get(rule, 0.0) + share
+                each.counted = replace(each.counted, uses=uses, rules=rules)
 
     def to_json(self) -> dict[str, Any]:
         """Plain numbers, lists and strings; sentences in memory are not kept, nor what in K is no more than chance."""
         correlation = self.correlation.to_json()
-        kept: dict[str, list[Any]] = {}
-        for ngram, (*entry, row) in sorted(correlation["ngrams"].items(), key=lambda one: one[0].count(" ")):
-            if all(part in kept for part in parts_of(ngram)) and self._coheres(ngram):
-                pairs = {text: n for text, n in row.items() if self._kept(ngram, Concept.parse(text))}
-                kept[ngram] = [*entry, pairs]
-        correlation["ngrams"] = dict(sorted(kept.items()))
+        ngrams: dict[str, list[Any]] = {}
+        for ngram, entry in sorted(correlation["ngrams"].items(), key=lambda one: one[0].count(" ")):
+            if all(part in ngrams for part in parts_of(ngram)) and self._coheres(ngram) and self._is_saved(ngram):
+                ngrams[ngram] = entry
+        correlation["ngrams"] = dict(sorted(ngrams.items()))
+        grammar = self.grammar.to_json()
         return {
             "words": self.joined.to_json(),
-            "correlation": correlation,
+            "correlation": packed(correlation, ANY, self._kept),
             "grounding": self.grounding.to_json(),
-            "grammar": self.grammar.to_json(),
+            "rules": grammar["rules"],
+            "junctures": self.junctures.to_json()["terminals"],
         }
 
     @classmethod
@@ -235,16 +254,27 @@ class Tongue:
         """Rebuild; raises KeyError, TypeError, ValueError or AttributeError for what `to_json` did not write."""
         tongue = cls()
         tongue.joined = JoinedWords.from_json(data["words"])
-        tongue.correlation = CorrelationMatrix.from_json(data["correlation"])
+        tongue.correlation = CorrelationMatrix.from_json(unpacked(data["correlation"]))
         tongue.grounding = Grounding.from_json(data["grounding"])
-        tongue.grammar = Pcfg.from_json(data["grammar"])
+        rules = data["rules"] if "rules" in data else data["grammar"]["rules"]  # older files
+        tongue.grammar = Pcfg.from_json({"rules": rules, "terminals": {}})
+        for ngram, row in tongue.grounding.counts.items():
+            for concept, count in row.items():
+                if concept is not None:
+                    tongue.grammar.add_terminal(concept.space, ngram, count)
+        tongue.junctures = Pcfg.from_json({"rules": {}, "terminals": data.get("junctures", {})})
         return tongue
 
     def _kept(self, ngram: str, concept: Concept) -> bool:
-        """Whether a count of K is saved: that of a feature space, or of a pair that goes together beyond chance."""
-        if concept.space.startswith(ANY):
-            return self.correlation.joint_counts[ngram][concept] > 0.0
-        return self.correlation.strength_beyond_chance(ngram, concept) >= LEAST_STRENGTH
+        """Whether a count of K is saved: that of a pair that was read, or that goes together far beyond chance."""
+        if round(self._readings(ngram).get(concept, 0.0), 3) >= LEAST_USE:
+            return True
+        return self.correlation.strength_beyond_chance(ngram, concept) >= MEASURED
+
+    def _is_saved(self, ngram: str) -> bool:
+        """Whether an n-gram is saved: any word, and longer ones of which something is."""
+        row: Mapping[Concept, float] = self.correlation.joint_counts.get(ngram, {})
+        return " " not in ngram or any(self._kept(ngram, concept) for concept in list(row) if ANY not in concept.space)
 
     def _suppose(self, ngrams: set[str], salient: frozenset[Concept]) -> None:
         """Select (4.2) and filter (4.3 to 4.6) hypotheses for the n-grams of a demo and its salient concepts."""
@@ -276,11 +306,13 @@ class Tongue:
             self.grounding.add(piece, None, sign * share)
         for (left, right), share in expected.rules.items():
             self.grammar.add_rule(left, right, sign * share)
+        for (place, piece), share in expected.junctures.items():
+            self.junctures.add_terminal(place, piece, sign * share)
 
     def _chart(self, pieces: tuple[str, ...], scene: TableScene | None) -> TableChart:
         self._weights.clear()
         uses = self._uses(pieces, scene)
-        return TableChart(pieces, uses, self._skip(pieces), self._rule_weight, scene)
+        return TableChart(pieces, uses, self._skip(pieces), self._rule_weight, self._juncture_weight, scene)
 
     def _uses(self, pieces: tuple[str, ...], scene: TableScene | None) -> list[WordUse]:
         """Ways to read the n-grams of a sentence: hypotheses, and what they were read as before."""
@@ -293,9 +325,10 @@ class Tongue:
             lent = self._hypotheses.get(ngram, {}) if scene is not None else {}
             concepts = {concept for concept, count in known.items() if concept is not None and count >= LEAST_USE}
             concepts |= set(lent)
-            if scene is not None and " " not in ngram:
+            if scene is not None:
                 # A new word may say what was done, what the thing is like or where, as grammar expects there (7.3.3).
                 concepts |= {Concept(ACTION_SPACE, scene.action)} | scene.goal
+                concepts |= {each for relation in scene.goal_relations.values() for each in relation}
                 if not any(concept in looks for looks in scene.looks for concept in lent):
                     concepts |= scene.looks[scene.moved]
             concepts = {concept for concept in concepts if self._borne_out(ngram, concept)}
@@ -303,7 +336,7 @@ class Tongue:
                 concepts |= UNMEASURED
             if possible is not None:
                 weights = {
-                    concept: self._word_weight(ngram, concept, lent.get(concept, 0.0))
+                    concept: self._word_weight(ngram, concept, lent.get(concept, 0.0)) + self._told(concept)
                     for concept in concepts & possible
                 }
             else:
@@ -313,7 +346,23 @@ class Tongue:
                 for concept, weight in sorted(weights.items())
                 for first, after in spans
             ]
+            if scene is not None:
+                for concept in sorted(self._of_the_unseen(ngram, concepts, scene)):
+                    weight = self._word_weight(ngram, concept, 0.0) + UNSEEN
+                    uses += [WordUse(first, after, concept, ngram, weight, True) for first, after in spans]
         return uses
+
+    def _of_the_unseen(self, ngram: str, concepts: set[Concept], scene: TableScene) -> set[Concept]:
+        """Looks that an n-gram mainly means and that nothing in a scene has that was seen well: others may."""
+        row = self._readings(ngram)
+        total = sum(row.values())
+        return {
+            concept
+            for concept in concepts
+            if concept.space in scene.unseen
+            and row.get(concept, 0.0) >= max(SURELY, MAINLY * total)
+            and not any(concept in looks for looks in scene.looks)
+        }
 
     def _borne_out(self, ngram: str, concept: Concept) -> bool:
         """Whether K, once it has seen enough, has the n-gram go with the concept at all."""
@@ -321,7 +370,7 @@ class Tongue:
         if concept in UNMEASURED:
             return max(self._hypotheses.get(ngram, {}).values(), default=0.0) < MEASURED
         heard, every = matrix.ngram_counts.get(ngram, 0.0), _any_like(concept)
-        usual = matrix.concept_counts.get(concept, 0.0) / max(matrix.concept_counts.get(every, 0.0), 1.0)
+        usual = self._usual(concept)
         if matrix.demos > FIRST_SENTENCES and usual > 1.0 / LEAST_LIFT:
             return False  # what is true of nearly everything tells nothing
         if heard < FEW_TIMES:
@@ -332,7 +381,28 @@ class Tongue:
             return share >= ACTION_LIFT * usual
         if concept.space == ACTION_SPACE:
             return share >= LEAST_ACTION
-        return share >= max(LEAST_TRUE, LEAST_LIFT * usual)
+        sure = wilson(row.get(concept, 0.0), row.get(every, 0.0), self._by_chance(every)) > usual
+        return sure and share >= max(LEAST_TRUE, LEAST_LIFT * usual)
+
+    def _told(self, concept: Concept) -> float:
+        """Log of how much likelier what is shown becomes when it is said: the rarer a concept is, the more it tells.
+
+        A word that is passed over tells nothing of what is shown, and one that has a meaning must be worth that.
+        """
+        return 0.0 if concept in UNMEASURED else -math.log(min(1.0, max(self._usual(concept), RAREST)))
+
+    def _usual(self, concept: Concept) -> float:
+        """How often a concept is salient when anything of its feature space is."""
+        counts = self.correlation.concept_counts
+        return counts.get(concept, 0.0) / max(counts.get(_any_like(concept), 0.0), 1.0)
+
+    def _by_chance(self, every: Concept) -> float:
+        """Standard errors by which the best of all meanings of one kind exceeds its share by chance."""
+        known = self._kinds.get(every)
+        if known is None or known[0] != self.correlation.demos:
+            count = sum(1 for concept in self.correlation.concept_counts if _any_like(concept) == every)
+            known = self._kinds[every] = self.correlation.demos, math.sqrt(2.0 * math.log(max(count, 2)))
+        return known[1]
 
     def _readings(self, ngram: str) -> Mapping[Concept | None, float]:
         """How often an n-gram was read as what, without making an entry of one never heard."""
@@ -366,7 +436,7 @@ class Tongue:
         """Log P(δ | v): counts, the hypothesis, and a little for any n-gram."""
         said = max(0.0, self.grounding.counts[ngram][concept]) if ngram in self.grounding.counts else 0.0
         total = max(0.0, self.grounding.concept_totals.get(concept, 0.0))
-        new = RELATING if concept in UNMEASURED else NEW_WORD
+        new = RELATING.get(concept, NEW_WORD)
         rare = LONGER ** ngram.count(" ")
         return math.log((said + (PRIOR * strength + new) * rare) / (total + PRIOR + 1.0))
 
@@ -386,14 +456,26 @@ class Tongue:
 
     def _skip(self, pieces: tuple[str, ...]) -> list[float]:
         """Log probability of each piece as one that is passed over."""
+        return [PASSED + math.log(self._passed(piece)) for piece in pieces]
+
+    def _passed(self, piece: str) -> float:
+        """Probability of a piece among all that are passed over."""
         total = max(0.0, self.grounding.concept_totals.get(None, 0.0))
-        heard = sum(self.joined.counts.values())
-        weights = []
+        passed = max(0.0, self.grounding.counts[piece][None]) if piece in self.grounding.counts else 0.0
+        usual = (self.joined.counts.get(piece, 0.0) + 0.5) / (self.joined.total + 1.0)
+        return (passed + usual) / (total + 1.0)
+
+    def _juncture_weight(self, place: str, pieces: tuple[str, ...]) -> float:
+        """Log probability of passing over some pieces, and no more, in a place between two parts."""
+        row: Mapping[str, float] = self.junctures.terminals.get(place, {})
+        total = max(0.0, self.junctures.total(place)) + PRIOR_JUNCTURES
+        going_on = math.exp(PASSED)
+        weight = math.log((max(0.0, row.get(END, 0.0)) + PRIOR_JUNCTURES * (1.0 - going_on)) / total)
         for piece in pieces:
-            passed = max(0.0, self.grounding.counts[piece][None]) if piece in self.grounding.counts else 0.0
-            usual = (self.joined.counts.get(piece, 0.0) + 0.5) / (heard + 1.0)
-            weights.append(PASSED + math.log((passed + usual) / (total + 1.0)))
-        return weights
+            weight += math.log(
+                (max(0.0, row.get(piece, 0.0)) + PRIOR_JUNCTURES * going_on * self._passed(piece)) / total
+            )
+        return weight
 
     def _rule_weight(self, left: str, right: tuple[str, ...]) -> float:
         known = self._weights.get((left, right))
@@ -429,7 +511,8 @@ def _with_spaces(salient: Iterable[Concept]) -> set[Concept]:
 
 def _any_like(concept: Concept) -> Concept:
     """The pseudo-concept that anything of a concept's feature space is salient; sorts are of the space they sort."""
-    return Concept(f"{ANY}{concept.space.removeprefix(NAMED)}", 0)
+    space = "direction" if concept == OVER else concept.space.removeprefix(NAMED)
+    return Concept(f"{ANY}{space}", 0)
 
 
 def _possible(scene: TableScene) -> set[Concept]:

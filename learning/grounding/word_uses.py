@@ -10,10 +10,10 @@ from learning.grammar.innate import (
     BESIDE,
     COLLECTIVE,
     COUNTS,
+    EXTREMES,
+    FURTHEST,
     GROUP,
     IT,
-    NEAREST,
-    NEAREST_ONE,
     ONE,
     REGION,
     SIDES,
@@ -38,6 +38,8 @@ HOPELESS = 5.0
 """A meaning whose weight is this much below that of passing the word over is not tried."""
 PASSED = -1.2
 """Weight of passing any word over, beside how likely it is to mean nothing: words are said for a reason."""
+DOUBT = 0.25
+"""Probability that is added to that of any word to mean nothing, so that one use in vain does not give it a meaning."""
 UNMEASURED = (
     (IT, 20.0, math.inf),
     (ABOVE, 5.0, 100.0),
@@ -46,6 +48,7 @@ UNMEASURED = (
     (BESIDE, 5.0, 60.0),
     (WHOLE, 5.0, 60.0),
     (REGION, 5.0, 60.0),
+    (FURTHEST, 5.0, 60.0),
 )
 """Kinds of meaning that no scene shows by itself, or nearly every scene does, with how often a word for them may have
 been heard."""
@@ -55,13 +58,11 @@ PLAIN = 0.5
 """A word that means something with this probability needs no such kind."""
 RARE = 30.0
 """A word heard less often than this may be an action that is seldom called so."""
-ACTING = 0.3
+ACTING = 0.1
 """A word that means some action with this probability may mean any."""
 UNMEASURED_PROBABILITY = 0.02
-ESTABLISHED = 10.0
-"""Validations of a meaning after which it is trusted."""
-RANK_SHARE = 0.3
-"""How likely a word for "nearest to" is said of the nearest one, next to how likely it is said of something."""
+MEASURING = 0.3
+"""A word that is a unit of distance with this probability may have a number before it."""
 DISPLACING = (*SIDES, *COUNTS, UNIT)
 """What is said of how far something moves: always together, so that few demos do not tell one from the next."""
 SENTENCE_END = "."
@@ -95,6 +96,7 @@ class UseTable:
         self.alignment = alignment
         self.grounding = grounding
         self.weights = weights
+        self.least_probability = LEAST_PROBABILITY
 
     def meanings(self, word: str) -> dict[Meaning, float]:
         """P(meaning | word): what was validated, with the alignment as prior."""
@@ -114,14 +116,6 @@ class UseTable:
         known = dict.fromkeys((*validated, *aligned))
         return {m: (max(0.0, validated.get(m, 0.0)) + prior * aligned.get(m, 0.0)) / (total + prior) for m in known}
 
-    def _established(self, word: str, meaning: Concept) -> bool:
-        """Whether most validations of a word are of a meaning."""
-        validated = self.grounding.counts.get(word)
-        if not validated:
-            return False
-        amount = validated.get(meaning, 0.0)
-        return amount >= ESTABLISHED and amount > PLAIN * sum(validated.values())
-
     def _kin_of_shape(self, word: str) -> bool:
         """Whether a word is a longer form of one that names a shape, as plurals are in many languages."""
         for length in (len(word) - 1, len(word) - 2):
@@ -132,21 +126,28 @@ class UseTable:
                 return True
         return False
 
-    def of(self, words: Sequence[str], actions: Sequence[int]) -> WordUses:
+    def of(self, words: Sequence[str], actions: Sequence[int], open_minded: bool = False) -> WordUses:
         """List how the words of a sentence may be read.
 
         Args:
             words: The sentence.
             actions: Numbers of the known actions, one of each sort.
+            open_minded: Whether any word that has no plain meaning may be an action.
         """
         kept: list[int] = []
         uses: list[Use] = []
         passed: list[float] = []
-        for position, word in enumerate(words):
-            means = self.meanings(word)
+        of_words = [self.meanings(word) for word in words]
+        measuring = [means.get(UNIT, 0.0) > MEASURING for means in of_words]
+        for position, (word, means) in enumerate(zip(words, of_words, strict=True)):
+            before_unit = measuring[position + 1] if position + 1 < len(words) else False
             skip = self._passed(word, means)
             after = words[position + 1] if position + 1 < len(words) else SENTENCE_END
-            found = [use for use in self._uses(word, after, means, actions, len(kept)) if use.score > skip - HOPELESS]
+            found = [
+                use
+                for use in self._uses(word, after, means, actions, len(kept), open_minded, before_unit)
+                if use.score > skip - HOPELESS
+            ]
             if found:
                 kept.append(position)
                 uses += found
@@ -154,13 +155,20 @@ class UseTable:
         return WordUses(tuple(kept), tuple(uses), tuple(passed))
 
     def _passed(self, word: str, means: dict[Meaning, float]) -> float:
-        return math.log(means.get(None, 0.0) + 0.1) + PASSED + self.weights.learned.get(passed_feature(word), 0.0)
+        return math.log(means.get(None, 0.0) + DOUBT) + PASSED + self.weights.learned.get(passed_feature(word), 0.0)
 
     def _uses(
-        self, word: str, after: str, means: dict[Meaning, float], actions: Sequence[int], position: int
+        self,
+        word: str,
+        after: str,
+        means: dict[Meaning, float],
+        actions: Sequence[int],
+        position: int,
+        open_minded: bool,
+        before_unit: bool,
     ) -> list[Use]:
         count = self.alignment.word_counts.get(word, 0.0)
-        likely = [(p, meaning) for meaning, p in means.items() if meaning is not None and p > LEAST_PROBABILITY]
+        likely = [(p, meaning) for meaning, p in means.items() if meaning is not None and p > self.least_probability]
         likely.sort(key=lambda pair: (-pair[0], pair[1]))
         chosen: dict[Concept, float] = {meaning: p for p, meaning in likely[:MOST_MEANINGS]}
         kin = self._kin_of_shape(word)
@@ -169,12 +177,17 @@ class UseTable:
             if least <= count <= most and not kin and not plain:
                 probability = UNMEASURED_PROBABILITY * (IT_SHARE if meaning == IT else 1.0)
                 chosen[meaning] = max(chosen.get(meaning, 0.0), probability)
+        extreme = sum(means.get(each, 0.0) for each in EXTREMES)
+        if extreme > LEAST_PROBABILITY:
+            # Said of what is furthest to some side: beside a word for that side it means no more than "furthest".
+            chosen[FURTHEST] = max(chosen.get(FURTHEST, 0.0), extreme)
         acting = sum(p for meaning, p in means.items() if meaning is not None and meaning.space == ACTION_SPACE)
-        if count < RARE or acting > ACTING:
+        if count < RARE or acting > ACTING or (open_minded and not plain):
             for number in actions:
                 chosen.setdefault(Concept(ACTION_SPACE, number), UNMEASURED_PROBABILITY / 2)
-        if self._established(word, NEAREST):
-            chosen[NEAREST_ONE] = max(chosen.get(NEAREST_ONE, 0.0), RANK_SHARE * means[NEAREST])
+        if before_unit:
+            for meaning in COUNTS:
+                chosen.setdefault(meaning, UNMEASURED_PROBABILITY)
         if count < RARE and sum(p for meaning, p in means.items() if meaning in DISPLACING) > ACTING:
             for meaning in DISPLACING:
                 chosen.setdefault(meaning, UNMEASURED_PROBABILITY / 2)

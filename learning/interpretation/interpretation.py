@@ -13,6 +13,11 @@ MEANINGFUL = 0.6
 ESTABLISHED = 3.0
 """Validations after which that share is trusted."""
 
+MOST_TOLD = 10
+"""Words of one sort that an explanation names."""
+LONGEST_TOLD = 30
+"""Letters of a word that it shows."""
+
 
 @dataclass(frozen=True, slots=True)
 class Goal:
@@ -39,7 +44,8 @@ class Interpretation:
         goals: What to do, in order; the most likely choice where the sentence leaves several.
         tree: The RCL tree Ψ, None when nothing was understood.
         explanation: What was understood, or why nothing was, in a sentence.
-        unknown: Words that were never heard.
+        unknown: Words and signs that were never heard.
+        unlearned: Words that the reading passes over and that were heard too seldom to know if they mean something.
         unheeded: Words with a learned meaning that the reading had to pass over: nothing in the scene is that.
         object_candidates: Track numbers of all objects that the sentence may be about.
         place_candidates: All positions [m] that it may end at.
@@ -56,6 +62,7 @@ class Interpretation:
     object_candidates: tuple[int, ...] = ()
     place_candidates: tuple[FloatArray, ...] = ()
     confidence: float = 0.0
+    unlearned: tuple[str, ...] = ()
 
 
 def refusal(words: tuple[str, ...], why: str, unknown: tuple[str, ...] = ()) -> Interpretation:
@@ -72,6 +79,7 @@ def understanding(
     passed: tuple[tuple[str, ...], tuple[str, ...]],
     tree: RclNode,
     confidence: float,
+    unlearned: tuple[str, ...] = (),
 ) -> Interpretation:
     """Say what was understood.
 
@@ -84,6 +92,7 @@ def understanding(
         passed: Words that were never heard, and words with a learned meaning that nothing in the scene has.
         tree: The RCL tree.
         confidence: Share of the reading among all, 0..1.
+        unlearned: Words that are passed over and of which little is known.
     """
     number, graphlet = action
     moved, place = move
@@ -111,12 +120,15 @@ def understanding(
         object_candidates=tuple(int(percept.object_ids[each]) for each in objects),
         place_candidates=tuple(percept.placements[each] for each in places),
         confidence=confidence,
+        unlearned=unlearned,
     )
 
 
-def listed(words: tuple[str, ...]) -> str:
-    """Write words in quotes."""
-    return ", ".join(f"“{word}”" for word in words)
+def listed(words: tuple[str, ...], quoted: bool = True) -> str:
+    """Write words, in quotes or not: the first few, and of long ones the beginning."""
+    told = [word if len(word) <= LONGEST_TOLD else f"{word[:LONGEST_TOLD]}…" for word in words[:MOST_TOLD]]
+    more = f" and {len(words) - MOST_TOLD} more" if len(words) > MOST_TOLD else ""
+    return ", ".join(f"“{word}”" if quoted else word for word in told) + more
 
 
 def metres(position: FloatArray) -> str:

@@ -42,7 +42,10 @@ class ReadingInterpreter:
         if len(words) > LONGEST:
             return refusal(words, f"the sentence has {len(words)} words; say it in at most {MOST_WORDS}", unknown[:10])
         scene = BoardElements(Arrangement.of(percept), self.knowledge.bearing_shapes())
-        found = self.language.read(words, scene, self.knowledge.action_table())
+        actions = self.knowledge.action_table()
+        found = self.language.read(words, scene, actions)
+        if not found.readings and len(found.kept) <= MOST_WORDS:
+            found = self.language.read(words, scene, actions, open_minded=True)
         if not found.readings:
             return refusal(words, self._why_nothing(words, unknown, found, scene), unknown)
         votes = moves_of(found)
@@ -63,23 +66,20 @@ class ReadingInterpreter:
         number, (moved, _) = reading.action, move
         things = [thing for thing, _ in reading.moves]
         places = bits(next(places for thing, places in reading.moves if thing == moved))
+        leaves = (leaf for phrase in reading.phrases() for leaf in phrase.leaves())
+        used = {found.kept[position] for leaf in leaves for position in leaf.used}
+        passed = tuple(dict.fromkeys(word for position, word in enumerate(words) if position not in used))
         return understanding(
             words,
             percept,
             (number, self.knowledge.spaces.actions[number]),
             move,
             (things, places),
-            (unknown, self._unheeded(words, reading, found.kept)),
+            (unknown, tuple(word for word in passed if self._established(word))),
             tree_of(reading, found.kept),
             share,
+            tuple(word for word in passed if word not in unknown and self.language.grounding.total(word) < ESTABLISHED),
         )
-
-    def _unheeded(self, words: tuple[str, ...], reading: CommandReading, kept: tuple[int, ...]) -> tuple[str, ...]:
-        """Words with an established meaning of looks or place that the reading passes over."""
-        leaves = (leaf for phrase in reading.phrases() for leaf in phrase.leaves())
-        used = {kept[position] for leaf in leaves for position in leaf.used}
-        left = (word for position, word in enumerate(words) if position not in used)
-        return tuple(dict.fromkeys(word for word in left if self._established(word)))
 
     def _established(self, word: str) -> Concept | None:
         grounding = self.language.grounding
@@ -98,7 +98,11 @@ class ReadingInterpreter:
         if len(found.kept) > MOST_WORDS:
             return f"the sentence has {len(words)} words, too many to read at once; say it in shorter ones"
         if not found.kept or set(unknown) == set(words):
-            said = f"never heard: {', '.join(unknown)}" if unknown else "none of its words was learned to mean anything"
+            said = (
+                f"never heard: {listed(unknown, quoted=False)}"
+                if unknown
+                else "none of its words was learned to mean anything"
+            )
             return f"nothing of the sentence was understood ({said})"
         missing = self._absent(words, scene)
         if missing:

@@ -33,7 +33,11 @@ class ThesisInterpreter:
         unknown = tuple(dict.fromkeys(w for w in words if w not in language.correlation.ngram_counts))
         entries, skip = lexical_entries(words, language.grounding, language.preferences)
         if not any(entry.concept.space == "action" for entry in entries):
-            said = f"never heard: {', '.join(unknown)}" if unknown else "the words are known, but not as an action"
+            said = (
+                f"never heard: {listed(unknown, quoted=False)}"
+                if unknown
+                else "the words are known, but not as an action"
+            )
             return refusal(words, f"no word of the sentence is known to name an action ({said})", unknown)
         scene = SceneSets(percept, self.knowledge.bearing_shapes())
         chart = Chart(

@@ -10,7 +10,7 @@ from learning.perception.held_weight import empty_hand, held_weight
 from learning.perception.newcomers import EARLY
 from learning.perception.observation import Observation
 from learning.perception.proprioception import Proprioception
-from learning.perception.shape_histogram import WholeView, shapes_over_time
+from learning.perception.shape_over_time import Glimpse, shape_over_time
 from learning.perception.sighting import Sighting
 from learning.perception.surface_colour import hsl_of
 from learning.perception.table import Table
@@ -55,7 +55,8 @@ def gathered(own: Proprioception, frames: Sequence[Sequence[Sighting]], table: T
     ]
     number = len(kept)
     location, extent = np.zeros((len(frames), number, 3)), np.zeros((len(frames), number, 3))
-    colour, shape = np.zeros((len(frames), number, 3)), np.zeros((len(frames), number, 33))
+    colour = np.zeros((len(frames), number, 3))
+    shape, glimpsed = np.zeros((2, len(frames), number, 33))
     visible, held = np.zeros((len(frames), number), dtype=bool), np.zeros((len(frames), number), dtype=bool)
     notes = []
     for column, track in enumerate(kept):
@@ -69,11 +70,12 @@ def gathered(own: Proprioception, frames: Sequence[Sequence[Sighting]], table: T
         visible[late:, column] = [each.visible for each in known]
         visible[:late, column] = late < EARLY  # it was looked at twice before it was believed
         held[late:, column] = [each.held for each in known]
-        colour[:, column] = hsl_of(_filled([each.colour for each in filled]))
-        shape[:, column] = shapes_over_time(_whole_views(track), len(frames))
+        colour[:, column] = hsl_of(_filled(_colours(filled)))
+        shapes = shape_over_time(_glimpses(track), len(frames))
+        shape[:, column], glimpsed[:, column] = shapes.best, shapes.glimpsed
         notes += _gone(column, known, own, table)
     weight = _weights(own, location, extent, held)
-    features = {"size": read_only(extent)}
+    features = {"size": read_only(extent), "glimpsed_shape": read_only(glimpsed)}
     if weight is not None:
         features["weight"] = weight
     visible.setflags(write=False)
@@ -117,9 +119,15 @@ def _filled(colours: Sequence[FloatArray | None]) -> FloatArray:
     return np.asarray(np.stack([each for each in colours if each is not None])[nearest])
 
 
-def _whole_views(track: Sequence[Sighting | None]) -> list[WholeView]:
+def _colours(filled: Sequence[Sighting]) -> list[FloatArray | None]:
+    """Colours as the whole views of a thing show it, where there are any."""
+    whole = any(each.whole for each in filled)
+    return [each.colour if each.whole or not whole else None for each in filled]
+
+
+def _glimpses(track: Sequence[Sighting | None]) -> list[Glimpse]:
     return [
-        WholeView(frame, each.centre, each.piece.measured, each.piece.depth, each.view)
+        Glimpse(frame, each.whole, each.centre, each.piece.measured, each.piece.depth, each.view)
         for frame, each in enumerate(track)
         if each is not None and each.piece is not None and each.view is not None
     ]

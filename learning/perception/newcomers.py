@@ -8,7 +8,6 @@ from scipy.spatial import cKDTree
 
 from learning.perception.box_maker import BoxMaker
 from learning.perception.segments import Piece
-from learning.perception.surface_colour import surface_colour
 from learning.perception.track import BOX_SIGMA, Track
 from learning.perception.upright_box import UprightBox
 from robots.pose import FloatArray
@@ -82,7 +81,7 @@ class Newcomers:
 
 def _known_again(newcomer: Newcomer, tracks: Sequence[Track], eye: FloatArray) -> bool:
     """Whether what seems new is a thing that was lost, or moved by the hand while hidden; it is then corrected."""
-    colour, size = surface_colour(newcomer.piece.colours), len(newcomer.piece.points)
+    colour, size = newcomer.piece.colour, len(newcomer.piece.points)
     alike = []
     for track in tracks:
         if track.missing < SURE_EARLY and not (track.hidden >= SURE_EARLY and track.touched):

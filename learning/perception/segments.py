@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from learning.perception.pixel_kernel import FOUND, connect
 from learning.perception.robot_eye import Look
+from learning.perception.surface_colour import surface_colour
 from learning.perception.table import TableView
 from robots.pose import FloatArray
 
@@ -50,6 +51,11 @@ class Piece:
     depth: FloatArray
     colours: FloatArray
     beside_robot: bool
+
+    @property
+    def colour(self) -> FloatArray:
+        """Red, green, blue of its surface, (3,) of 255; of what a hand may hide, as if nothing did."""
+        return surface_colour(self.colours, self.points[:, 2] if self.beside_robot else None)
 
 
 @dataclass(frozen=True, slots=True)

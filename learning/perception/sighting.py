@@ -19,7 +19,8 @@ class Sighting:
         held: Whether it is believed to be in the hand.
         colour: Red, green, blue of 255, (3,); None where too little of it was seen.
         exposure: Part of it that nothing hides, 0 .. 1.
-        piece: Its pixels, where it was seen whole.
+        piece: Its pixels, where any were seen.
+        whole: Whether they are all that can be seen of it from there.
         view: The table from where the camera was.
     """
 
@@ -31,4 +32,5 @@ class Sighting:
     colour: FloatArray | None
     exposure: float
     piece: Piece | None
+    whole: bool
     view: TableView | None

@@ -23,7 +23,7 @@ from learning.perception.camera_observation import Perceived
 from learning.perception.observation_file import load_observation, save_observation
 from learning.perception.observe_camera import USUAL, Eyesight
 
-PERCEPTION_VERSION = 1
+PERCEPTION_VERSION = 2
 """Raised when perception would give other observations for the same demo."""
 ROUND = 4
 """Demos for each worker of a cluster that are asked for at a time: between rounds progress is told."""

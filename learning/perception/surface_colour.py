@@ -2,34 +2,54 @@
 
 import numpy as np
 
+from learning.perception.height_slices import height_weights
 from robots.pose import FloatArray
 
 MAIN_COLOUR = 0.08
 """Distance in chromaticity from the median that is still the main colour: caps and labels are not."""
 CHROMA_NOISE = 8.0
 """How much farther in the dark, over the sum of a pixel's channels."""
+SHADED = 3.0
+"""Factor of brightness that light and shade explain; a white cap on a black body is more."""
+DARK = 24.0
+"""Added to the sum of a pixel's channels before brightness is compared: noise of three channels."""
 WELL_LIT = 0.6
 """Part of the pixels of the main colour that are darker than the well-lit ones."""
 MOST_PIXELS = 200
 """About so many pixels are looked at."""
 
 
-def surface_colour(colours: FloatArray) -> FloatArray:
+def surface_colour(colours: FloatArray, heights: FloatArray | None = None) -> FloatArray:
     """Red, green, blue, (3,) of 255.
+
+    The main colour is that of most pixels. Of what a hand hides a part of, it is that of most heights: a hand hides the
+    body and leaves the lid.
 
     Args:
         colours: Pixels of one thing, at least one, (n, 3) of 255.
+        heights: Their heights, (n,) [m], where a part of the thing is hidden; None where nothing is.
     """
-    colours = colours[:: max(len(colours) // MOST_PIXELS, 1)]
+    step = max(len(colours) // MOST_PIXELS, 1)
+    colours = colours[::step]
+    weights = np.ones(len(colours)) if heights is None else height_weights(heights[::step])
     total = colours.sum(axis=1) + 1.0
     chroma = colours[:, :2] / total[:, None]
-    off = np.abs(chroma - np.sort(chroma, axis=0)[len(chroma) // 2]).sum(axis=1)
-    main = off < MAIN_COLOUR + CHROMA_NOISE / total
-    if main.sum() < 0.2 * len(colours):
+    typical = np.array([_median(chroma[:, 0], weights), _median(chroma[:, 1], weights)])
+    off = np.abs(chroma - typical).sum(axis=1)
+    bright = np.log((total + DARK) / (_median(total, weights) + DARK))
+    main = (off < MAIN_COLOUR + CHROMA_NOISE / total) & (np.abs(bright) < np.log(SHADED))
+    if weights[main].sum() < 0.2 * len(colours):
         main = np.ones(len(colours), dtype=bool)
     order = np.argsort(total[main])
     well_lit = colours[main][order[int(WELL_LIT * len(order)) :]]
     return np.asarray(np.sort(well_lit, axis=0)[len(well_lit) // 2])
+
+
+def _median(values: FloatArray, weights: FloatArray) -> float:
+    """Weighted median of values (n,)."""
+    order = np.argsort(values)
+    summed = np.cumsum(weights[order])
+    return float(values[order[int(np.searchsorted(summed, 0.5 * summed[-1]))]])
 
 
 def hsl_of(rgb: FloatArray) -> FloatArray:

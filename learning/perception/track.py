@@ -7,7 +7,6 @@ from scipy.spatial import cKDTree
 from learning.perception.particle_filter import ParticleFilter
 from learning.perception.robot_eye import Look
 from learning.perception.segments import Piece
-from learning.perception.surface_colour import surface_colour
 from learning.perception.upright_box import UprightBox
 from robots.kinematics import rotation_matrix
 from robots.pose import FloatArray
@@ -69,7 +68,7 @@ class Track:
         """
         self.id = number
         self.guessed = guessed
-        self.colour: FloatArray = surface_colour(piece.colours)
+        self.colour: FloatArray = piece.colour
         state = np.concatenate((box.centre, self.colour))
         self.filter = ParticleFilter(state, np.array([BOX_SIGMA] * 3 + [COLOUR_SIGMA] * 3), rng)
         self.missing = self.hidden = 0
@@ -179,7 +178,7 @@ class Track:
 
     def measure(self, piece: Piece, centre: FloatArray, sigma: float) -> None:
         """Correct the belief by what was seen."""
-        self.colour = surface_colour(piece.colours)
+        self.colour = piece.colour
         self.filter.update(np.append(centre, self.colour), np.array([sigma] * 3 + [COLOUR_SIGMA] * 3))
         self.missing = self.hidden = 0
         self.touched = False

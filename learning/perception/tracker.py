@@ -11,7 +11,6 @@ from learning.perception.pixel_owners import owners_of, unowned
 from learning.perception.robot_eye import Look
 from learning.perception.segments import LEAST_PIXELS, Piece, Pixels, joined, pieces_of, standing_out
 from learning.perception.sighting import Sighting
-from learning.perception.surface_colour import surface_colour
 from learning.perception.table import Table, TableView
 from learning.perception.track import BOX_SIGMA, FIT_SIGMA, Track
 from learning.perception.upright_box import UprightBox
@@ -100,7 +99,7 @@ class Tracker:
         for each in self._newcomers.watch(loose, self.tracks, eye, self._frame):
             track = Track(len(self.tracks), each.piece, each.box, eye, self._rng, guessed=each.piece.beside_robot)
             self.tracks.append(track)
-            sightings.append(self._sighting(track, True, True, None if track.guessed else each.piece))
+            sightings.append(self._sighting(track, True, True, each.piece, not track.guessed))
         return sightings
 
     def _placed(self, look: Look) -> TableView:
@@ -135,7 +134,7 @@ class Tracker:
             reach = min(REACH + REACH_MORE * (track.missing + track.hidden), FARTHEST)
             for column, piece in enumerate(loose):
                 away = float(np.linalg.norm(piece.points.mean(axis=0) - believed[:3]))
-                other = float(np.abs(surface_colour(piece.colours) - believed[3:]).max())
+                other = float(np.abs(piece.colour - believed[3:]).max())
                 size = len(piece.points) / max(track.expected(eye), 1.0)
                 if away < reach and other < SAME_COLOUR and (size < LARGER or track.guessed):
                     cost[row, column] = away / reach + other / SAME_COLOUR
@@ -166,7 +165,7 @@ class Tracker:
             hidden = track.exposure <= HIDDEN
             track.hidden, track.missing = track.hidden + hidden, track.missing + (not hidden)
             self._hand.fallen(track, self.tracks, self._boxes.floor(track.centre))
-            return self._sighting(track, False, False, None)
+            return self._sighting(track, False, False, None, False)
         share = len(piece.points) / max(track.expected(eye), 1.0)
         whole = track.exposure > WHOLE and share > NEARLY_ALL and not piece.beside_robot
         if whole or (track.guessed and share > MORE):
@@ -182,10 +181,11 @@ class Tracker:
                 centre = fallen if np.linalg.norm(fallen - centre) > FELL else centre
             track.measure(piece, centre, FIT_SIGMA / max(min(share, 1.0), LEAST_TRUST))
         self._hand.was_seen(track)
-        return self._sighting(track, share >= LEAST_SEEN, whole or share >= MOSTLY, piece if whole else None)
+        return self._sighting(track, share >= LEAST_SEEN, whole or share >= MOSTLY, piece, whole)
 
-    def _sighting(self, track: Track, visible: bool, coloured: bool, whole: Piece | None) -> Sighting:
+    def _sighting(self, track: Track, visible: bool, coloured: bool, piece: Piece | None, whole: bool) -> Sighting:
         colour = track.colour if coloured else None
         return Sighting(
-            track.id, track.centre, track.box.extent, visible, track.held, colour, track.exposure, whole, self._view
-        )
+            track.id, track.centre, track.box.extent, visible, track.held, colour, track.exposure, piece, whole,
+            self._view,
+        )  # fmt: skip

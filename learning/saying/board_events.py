@@ -1,7 +1,6 @@
 """What may be said of a move on the board: the ways to tell what is moved, by which actions, and where to."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from learning.concept_id import ACTION_SPACE, Concept
 from learning.grammar.actions import ActionTable
@@ -20,24 +19,10 @@ from learning.grammar.innate import (
     WITHIN,
 )
 from learning.grammar.rcl import RclNode
-from learning.saying.board_references import MOST_GROUNDS, BoardReferences, Reference, leaf
+from learning.saying.board_references import MOST_GROUNDS, BoardReferences, leaf
 from learning.saying.ordering import meaning
+from learning.saying.reference import Destination, Reference
 from twin.board import CELLS
-
-
-@dataclass(frozen=True, slots=True)
-class Destination:
-    """A way to tell where something goes.
-
-    Attributes:
-        tree: Its meaning, a `spatial-relation`.
-        places: Placements that fit it, as a mask.
-        size: Number of concepts in it.
-    """
-
-    tree: RclNode
-    places: int
-    size: int
 
 
 class BoardEvents:
@@ -61,7 +46,7 @@ class BoardEvents:
         own = 0 if self.actions.starts_held[action] else 1 << scene.columns[moved]
         found = []
         for each in (*self._by_landmark(moved, placement), *self._by_steps(moved, placement)):
-            if each.places & scene.usable & ~own == 1 << placement:
+            if each.mask & scene.usable & ~own == 1 << placement:
                 found.append(each)
         return sorted(found, key=lambda each: each.size)
 

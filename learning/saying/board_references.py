@@ -1,11 +1,10 @@
 """Referring expressions for things and places of the board: properties first, then relations to landmarks.
 
-All short descriptions that fit a thing are tried, as in the full brevity method of Dale and Reiter (1995): what it looks
-like and how it ranks among its likes, then where it is, said by things and places that are referred to in the same way.
+All short descriptions that fit a thing are tried, as in the full brevity method of Dale and Reiter (1995): what it
+looks like and how it ranks among its likes, then where it is, by things and places that are referred to likewise.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 from learning.concept_id import Concept
@@ -30,6 +29,7 @@ from learning.grammar.innate import (
 from learning.grammar.rcl import RclNode
 from learning.grammar.scene import bits
 from learning.saying.ordering import meaning
+from learning.saying.reference import Reference
 from twin.board import CELLS
 
 DEEPEST = 2
@@ -42,35 +42,27 @@ UNIQUE = ("thing", "thing, side", "collective", "place")
 """How a description that is said may be meant."""
 
 
-@dataclass(frozen=True, slots=True)
-class Reference:
-    """A way to refer to something.
-
-    Attributes:
-        tree: Its meaning, an `entity`.
-        mask: The elements that fit it.
-        size: Number of concepts in it.
-        located: Whether it says where the thing is.
-    """
-
-    tree: RclNode
-    mask: int
-    size: int
-    located: bool = False
-
-
 class BoardReferences:
     """Referring expressions in one scene."""
 
-    def __init__(self, scene: BoardElements, named: Iterable[Concept], together: frozenset[tuple[str, ...]]) -> None:
+    def __init__(
+        self,
+        scene: BoardElements,
+        named: Iterable[Concept],
+        together: frozenset[tuple[str, ...]],
+        *,
+        telling_where: bool = False,
+    ) -> None:
         """Look at a scene.
 
         Args:
             scene: What there is.
             named: Concepts that have a name.
             together: What may be said of one thing together: labels, sorted.
+            telling_where: Whether to tell where a thing is also if it is told from all others without.
         """
         self.scene = scene
+        self._telling_where = telling_where
         self._together = together
         self.named = frozenset(named)
         self._known: dict[tuple[int, int], list[Reference]] = {}
@@ -152,9 +144,10 @@ class BoardReferences:
         return self._collectives[block]
 
     def _collective(self, block: int) -> Iterator[Reference]:
-        colours = tuple(sorted(concept for concept in self.scene.colours_below(block) if concept in self.named))
         column = self.scene.columns[block]
-        for told in dict.fromkeys(((), colours)):
+        tops = [block] if self.scene.held >> block & 1 else [self.scene.support[column], block]
+        colours = [tuple(sorted(self.scene.colours_below(top) & self.named)) for top in tops]
+        for told in dict.fromkeys(((), *colours)):
             description = frozenset((COLLECTIVE, *told))
             if COLLECTIVE not in self.named or len(told) > MOST_COLOURS:
                 continue
@@ -187,10 +180,14 @@ class BoardReferences:
             if not self._sayable(head.tree, "spatial-relation"):
                 continue
             for mask in self.scene.related(relation, ground.mask, head.mask)[:1]:  # what listeners think of first
-                if mask >> thing & 1 and mask != head.mask:
+                if mask >> thing & 1 and (mask != head.mask or mask == self._wanted(thing)):
                     where = meaning("spatial-relation", leaf(relation), ground.tree)
                     tree = meaning("entity", *head.tree.children, where)
                     yield Reference(tree, mask, head.size + 1 + ground.size, True)
+
+    def _wanted(self, thing: int) -> int:
+        """What may be told of although it rules nothing out."""
+        return 1 << thing if self._telling_where else 0
 
     def _landmarks(self, thing: int, depth: int) -> Iterator[tuple[Concept, Reference]]:
         """Relations and landmarks that a block may be told by."""

@@ -1,7 +1,8 @@
-"""Sentences about the board: chosen by how probable they are, and said only if they are understood as they are meant."""
+"""Sentences about the board: the likeliest that are understood as they are meant."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from itertools import islice
 from typing import TypeVar, cast
 
@@ -13,43 +14,27 @@ from learning.grounding.reading_learner import MOST_WORDS, ReadingLearner
 from learning.grounding.shares import shares_of
 from learning.interpretation.reading_interpreter import moves_of
 from learning.knowledge import Knowledge
-from learning.saying.board_events import BoardEvents, Destination
-from learning.saying.board_references import BoardReferences, Reference
+from learning.saying.board_events import BoardEvents
+from learning.saying.board_references import BoardReferences
 from learning.saying.ordering import said_together
 from learning.saying.phrasing import Phrasing
-from learning.saying.wording import Wording, wording
+from learning.saying.reference import Destination, Reference
+from learning.saying.saying import Saying
+from learning.saying.wording import Wording, different, wording
 
 TRIED = 12
 """Sentences that are read back before one is given up."""
 PARTS_TRIED = 8
 """Ways to tell each part that are combined."""
-CLEARLY = 0.9
-"""A phrase is said at once when so large a share of its readings means what it should."""
+CLARITY = 5.0
+"""How much it counts that a sentence is understood as it is meant, next to how likely it is to be said."""
 REFERENCES_TRIED = 60
 """Ways to refer to a thing that are put into words."""
 WHERE = 6.0
 """How much better, in log probability, a phrase is that tells where a thing is, when that is asked."""
 
 Part = TypeVar("Part", Reference, Destination)
-
-
-@dataclass(frozen=True, slots=True)
-class Saying:
-    """A sentence that is understood as it is meant.
-
-    Attributes:
-        text: The sentence.
-        tree: Its meaning.
-        score: Log probability of its words and order.
-        share: Share of the readings that understand it as it is meant.
-        tried: How many were put into words and read back before it was, itself included.
-    """
-
-    text: str
-    tree: RclNode
-    score: float
-    share: float
-    tried: int
+Meant = TypeVar("Meant")
 
 
 class BoardSpeaker:
@@ -83,34 +68,28 @@ class BoardSpeaker:
             goals += self._likeliest(events.destinations(moved, placement, action))
         trees = (tree for thing in things for goal in goals for tree in events.commands(action, thing, goal))
         wordings = (said for tree in trees if (said := self._say(tree)) is not None)
-        best: Saying | None = None
-        for number, said in enumerate(_best(wordings), start=1):
+
+        def share(said: Wording) -> float:
             votes = moves_of(self.language.read(said.words, scene, table))
-            share = votes.get((moved, placement), 0.0)
-            if share and share == max(votes.values()) and (best is None or share > best.share):
-                best = Saying(said.text, said.tree, said.score, share, number)
-            if share > CLEARLY:
-                break
-        return best
+            return _lead(votes, (moved, placement))
+
+        return _clearest(wordings, share)
 
     def thing(self, arrangement: Arrangement, thing: int) -> Saying | None:
         """Say where a block is, so that it is told from all others; None where no phrase was found that does."""
         scene = BoardElements(arrangement, self.knowledge.bearing_shapes())
-        fitting = [each for each in BoardReferences(scene, self._named, self._together).of_thing(thing) if each.mask == 1 << thing]
+        references = BoardReferences(scene, self._named, self._together, telling_where=True)
+        fitting = [each for each in references.of_thing(thing) if each.mask == 1 << thing]
         wordings = []
         for each in fitting[:REFERENCES_TRIED]:
             said = self._say(each.tree)
             if said is not None:
                 wordings.append(replace(said, score=said.score + WHERE) if each.located else said)
-        best: Saying | None = None
-        for number, said in enumerate(_best(wordings), start=1):
-            shares = read_thing(self.knowledge, self.language, said.words, scene)
-            share = shares.get(1 << thing, 0.0)
-            if share > max((each for mask, each in shares.items() if mask != 1 << thing), default=0.0) and (best is None or share > best.share):
-                best = Saying(said.text, said.tree, said.score, share, number)
-            if share > CLEARLY:
-                break
-        return best
+
+        def share(said: Wording) -> float:
+            return _lead(read_thing(self.knowledge, self.language, said.words, scene), 1 << thing)
+
+        return _clearest(wordings, share)
 
     def _say(self, tree: RclNode) -> Wording | None:
         return wording(tree, self.language.grammar, self.phrasing)
@@ -121,13 +100,24 @@ class BoardSpeaker:
         return [part for _, part in sorted(rated, key=lambda each: -each[0])[:PARTS_TRIED]]
 
 
-def _best(wordings: Iterable[Wording]) -> list[Wording]:
-    """The likeliest of different sentences, the best first."""
-    found: dict[tuple[str, ...], Wording] = {}
-    for each in wordings:
-        if each.words not in found or found[each.words].score < each.score:
-            found[each.words] = each
-    return sorted(found.values(), key=lambda each: -each.score)[:TRIED]
+def _lead(shares: Mapping[Meant, float], meant: Meant) -> float:
+    """Share of what is meant; 0 where something else is at least as likely."""
+    share = shares.get(meant, 0.0)
+    return share if share > max((each for key, each in shares.items() if key != meant), default=0.0) else 0.0
+
+
+def _clearest(wordings: Iterable[Wording], share: Callable[[Wording], float]) -> Saying | None:
+    """The sentence that is likely to be said and likely to be understood as it is meant; None where none would be."""
+    best: Saying | None = None
+    worth = -math.inf
+    for number, said in enumerate(different(wordings, TRIED), start=1):
+        if said.score <= worth:
+            break  # no other can be better, however clear it is
+        clear = share(said)
+        if clear and said.score + CLARITY * math.log(clear) > worth:
+            worth = said.score + CLARITY * math.log(clear)
+            best = Saying(said.text, said.tree, said.score, clear, number)
+    return best
 
 
 def read_thing(

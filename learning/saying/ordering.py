@@ -2,6 +2,7 @@
 
 import math
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import replace
 
 from learning.grammar.pcfg import Pcfg
@@ -18,7 +19,7 @@ def meaning(label: str, *children: RclNode) -> RclNode:
 
 def said_together(grammar: Pcfg, label: str) -> frozenset[tuple[str, ...]]:
     """What a part may consist of, whatever the order: labels of children, sorted."""
-    row = grammar.rules.get(label, {})
+    row: Mapping[tuple[str, ...], float] = grammar.rules.get(label, {})
     return frozenset(tuple(sorted(right)) for right, count in row.items() if count >= LEAST_SEEN)
 
 
@@ -55,6 +56,6 @@ def ordered(tree: RclNode, grammar: Pcfg) -> tuple[RclNode, float] | None:
 
 def _likeliest(tree: RclNode, grammar: Pcfg) -> tuple[str, ...] | None:
     wanted = Counter(child.label for child in tree.children)
-    row = grammar.rules.get(tree.label, {})
+    row: Mapping[tuple[str, ...], float] = grammar.rules.get(tree.label, {})
     fitting = [(count, right) for right, count in row.items() if count >= LEAST_SEEN and Counter(right) == wanted]
     return max(fitting)[1] if fitting else None

@@ -14,8 +14,8 @@ from learning.saved_numbers import saved_count
 from learning.saying.phrasing import Phrasing
 from learning.saying.wording import marked
 
-MOST = 600
-"""Sentences of a language that are heard again at a time; more change little."""
+MOST = 1000
+"""Sentences of a language that are heard again at a time."""
 BOARD = "board"
 """Stands for the language of the board among those that tell how many sentences were heard."""
 
@@ -50,6 +50,8 @@ class Phrasings:
             right = [each for each in found.readings if each.does(shown.moved, shown.placement)]
             if right:
                 self._of(script_of(episode.words)).hear(episode.words, tree_of(right[0], found.kept))
+        for phrasing in self.by_script.values():
+            phrasing.learn_names(language.grounding.counts)
 
     def rehear_tables(self, language: TableLanguage) -> None:
         """The same for sentences about tables."""

@@ -1,17 +1,16 @@
 """Meanings put into words: the likeliest names and words between them, found by dynamic programming over the leaves."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 
 from learning.concept_id import ACTION_SPACE
 from learning.grammar.pcfg import Pcfg
 from learning.grammar.rcl import RclNode
 from learning.saying.juncture import EDGE, Juncture, Path, juncture_of, paths_of
 from learning.saying.ordering import ordered
-from learning.saying.phrasing import UNHEARD, Name, Phrasing, beside, use_of
+from learning.saying.phrasing import JOIN, UNHEARD, Name, Phrasing, beside, element, use_of
 
-JOIN = "+"
-"""Marks a part of a word on the side where it is joined to what is beside it."""
 AFTER_ACTION = Juncture("event", ACTION_SPACE, "entity")
 TRIED = 3
 """Words between that are tried at each juncture."""
@@ -39,10 +38,17 @@ class Wording:
 
 @dataclass(frozen=True, slots=True)
 class _Said:
-    """The words up to a leaf whose name was chosen."""
+    """The words up to a leaf whose name was chosen.
+
+    Attributes:
+        score: Log probability.
+        pieces: The words so far, parts of words apart.
+        spans: First and last piece of each leaf so far, from 0.
+    """
 
     score: float
     pieces: tuple[str, ...]
+    spans: tuple[tuple[int, int], ...] = ()
 
 
 def wording(tree: RclNode, grammar: Pcfg, phrasing: Phrasing) -> Wording | None:
@@ -57,43 +63,77 @@ def wording(tree: RclNode, grammar: Pcfg, phrasing: Phrasing) -> Wording | None:
     if arranged is None:
         return None
     tree, score = arranged
+    # By the name that was said last, as all that follows depends on no more of what was said.
     states: dict[Name, _Said] = {EDGE: _Said(score, ())}
     before: Path | None = None
-    label = EDGE
     for path in (*paths_of(tree), None):
-        leaf = None if path is None else path[-1]
-        where = juncture_of(before, path)
-        if before is None and tree.label == "entity":
-            where, label = AFTER_ACTION, ACTION_SPACE  # a thing is told as it is in a command
-        names = [EDGE] if leaf is None or leaf.concept is None else [n for n, _ in phrasing.names_of(leaf.concept)]
-        agrees = before is not None and path is not None and beside(before, path)
-        reached: dict[Name, _Said] = {}
-        for name in names:
-            options = []
-            for known, said in states.items():
-                own = 0.0
-                if path is not None and leaf is not None and leaf.concept is not None:
-                    chance = phrasing.name_probability(leaf.concept, name, use_of(path), known if agrees else EDGE)
-                    own = math.log(max(chance, UNHEARD)) + 2.0 * math.log(phrasing.clarity(name, leaf.concept))
-                right = (EDGE, EDGE) if leaf is None else (leaf.label, name)
-                for between, share in phrasing.fillers_at((label, known), where, right)[:TRIED]:
-                    more = (*between.split(" "),) if between else ()
-                    named = () if leaf is None else tuple(name.split(" "))
-                    total = said.score + own + math.log(max(share, UNHEARD))
-                    options.append(_Said(total, (*said.pieces, *more, *named)))
-            if options:
-                reached[name] = max(options, key=lambda each: each.score)
-        if not reached:
-            return None
-        states = reached
-        before, label = path, EDGE if leaf is None else leaf.label
-    best = states[EDGE]
-    return Wording(joined(best.pieces), best.score, tree)
+        states = _extended(states, before, path, phrasing)
+        before = path
+    best = states.get(EDGE)
+    if best is None:
+        return None
+    words, origin = joined(best.pieces)
+    leaves = iter([(origin[first] + 1, origin[last] + 1) for first, last in best.spans])
+    return Wording(words, best.score, _spanned(tree, leaves))
 
 
-def joined(pieces: tuple[str, ...]) -> tuple[str, ...]:
-    """Words out of pieces, some of which are marked as joined to what is beside them."""
+def _spanned(node: RclNode, leaves: Iterator[tuple[int, int]]) -> RclNode:
+    """A tree with the words of its leaves, counted from 1."""
+    if node.concept is not None:
+        first, last = next(leaves)
+        return replace(node, first=first, last=last)
+    children = tuple(_spanned(child, leaves) for child in node.children)
+    first, last = min(child.first for child in children), max(child.last for child in children)
+    return replace(node, first=first, last=last, children=children)
+
+
+def _extended(
+    states: dict[Name, _Said], before: Path | None, path: Path | None, phrasing: Phrasing
+) -> dict[Name, _Said]:
+    """The likeliest words up to each name of the next leaf, or up to the end where there is none."""
+    left, where = (EDGE if before is None else element(before)), juncture_of(before, path)
+    if before is None and path is not None and path[0].label == "entity":
+        left, where = ACTION_SPACE, AFTER_ACTION  # a thing by itself is told as it is in a command
+    reached: dict[Name, _Said] = {}
+    for known, said in states.items():
+        for name, own in _named(known, before, path, phrasing):
+            right = (EDGE, EDGE) if path is None else (element(path), name)
+            for between, share in phrasing.fillers_at((left, known), where, right)[:TRIED]:
+                total = said.score + own + math.log(max(share, UNHEARD))
+                if name not in reached or reached[name].score < total:
+                    named = () if path is None else tuple(name.split(" "))
+                    pieces = (*said.pieces, *between.split(), *named)
+                    span = ((len(pieces) - len(named), len(pieces) - 1),) if named else ()
+                    reached[name] = _Said(total, pieces, (*said.spans, *span))
+    return reached
+
+
+def _named(known: Name, before: Path | None, path: Path | None, phrasing: Phrasing) -> list[tuple[Name, float]]:
+    """Names of a leaf with their log probabilities, unclear ones lowered."""
+    concept = None if path is None else path[-1].concept
+    if path is None or concept is None:
+        return [(EDGE, 0.0)]
+    agrees = before is not None and beside(before, path)
+    shares = phrasing.names_beside(concept, element(path), use_of(path), known if agrees else EDGE)
+    return [
+        (name, math.log(max(shares[name], UNHEARD)) + 2.0 * math.log(phrasing.clarity(name, concept)))
+        for name, _ in phrasing.names_of(concept)
+    ]
+
+
+def different(wordings: Iterable[Wording], count: int) -> list[Wording]:
+    """The likeliest of different sentences, the best first."""
+    found: dict[tuple[str, ...], Wording] = {}
+    for each in wordings:
+        if each.words not in found or found[each.words].score < each.score:
+            found[each.words] = each
+    return sorted(found.values(), key=lambda each: -each.score)[:count]
+
+
+def joined(pieces: tuple[str, ...]) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    """Words out of pieces, some of which are marked as joined to what is beside them; and the word of each piece."""
     words: list[str] = []
+    origin: list[int] = []
     open_end = False
     for piece in pieces:
         text = piece.strip(JOIN)
@@ -101,8 +141,9 @@ def joined(pieces: tuple[str, ...]) -> tuple[str, ...]:
             words[-1] += text
         else:
             words.append(text)
+        origin.append(len(words) - 1)
         open_end = piece.endswith(JOIN)
-    return tuple(words)
+    return tuple(words), tuple(origin)
 
 
 def marked(pieces: tuple[str, ...], origin: tuple[int, ...]) -> tuple[str, ...]:

@@ -1,7 +1,6 @@
 """One layout of the board in a Train-Robots release: the gripper and the blocks, each in a cell."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 from twin.board import CELLS
 
@@ -18,7 +17,8 @@ COLOUR_OF_CODE = {
     "X": "gray",
     "W": "white",
 }
-Shape = Literal["cube", "prism"]
+Shape = str
+"""`cube` or `prism`; in the extended release also `sphere` or `cylinder`."""
 SHAPE_OF_CODE: dict[str, Shape] = {"1": "cube", "2": "prism"}
 GRIPPER_CODES = ("O", "C")
 GROUP_IMAGES = range(1, 6)

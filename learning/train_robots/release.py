@@ -1,9 +1,11 @@
 """A Train-Robots release on disk: commands and scenes. `annotation.txt` is left to the scorer."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from learning.errors import ReleaseError
+from learning.train_robots.change import Change
 from learning.train_robots.layout import (
     COLOUR_OF_CODE,
     COORDINATES,
@@ -38,11 +40,13 @@ class Release:
         directory: Where it was read from.
         scenes: Scene number to scene, in rising order; also the scenes that no command speaks of.
         commands: The commands in the order of the file.
+        changes: What each scene changed, in the extended release; empty in a public one.
     """
 
     directory: Path
     scenes: dict[int, Scene]
     commands: tuple[Command, ...]
+    changes: Mapping[int, tuple[Change, ...]] = field(default_factory=dict)
 
     @classmethod
     def load(cls, directory: str | Path) -> "Release":

@@ -31,7 +31,7 @@ def test_the_demo_command_shows_learns_and_does(tmp_path: Path) -> None:
 
 def test_trials_are_judged_by_the_truth(knowledge: Knowledge, knowledge_file: str) -> None:
     """Knowledge made by hand knows few words: of the plain sentences it does those, and is right about each."""
-    verdicts = [run_trial(Trial(5, number, Path(knowledge_file), None, 0.0, None)) for number in range(6)]
+    verdicts = [run_trial(Trial(5, number, Path(knowledge_file), None, 0.0, None)) for number in range(16)]
     assert all(verdict.right for verdict in verdicts if verdict.report.success)
     assert all(verdict.fault for verdict in verdicts if not verdict.right)
     assert any(verdict.right for verdict in verdicts)

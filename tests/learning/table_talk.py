@@ -48,6 +48,8 @@ def table_talk(
             parts=parts,
             goal=frozenset((SIDE_PLACES[0], SIDE_PLACES[2])) if goes and by_place else frozenset(),
             goal_relations={1: frozenset((Concept("direction", side), BESIDE))} if goes and not by_place else {},
+            ground=1 if goes and not by_place else None,
+            unseen={},
         )
         record = TableRecord({}, nothing, nothing, 0, action == "put down", goes, number, parts)
         said = [words_of(told.text) for told in tell_table(facts, people, language, rng)]

@@ -9,6 +9,7 @@ from learning.concepts import (
     TABLE,
     ConceptSpaces,
     FeatureSpace,
+    ModeMixture,
     TrackMixture,
     find_space_set,
     fit_demo,
@@ -109,6 +110,7 @@ def test_names_are_looked_up() -> None:
     assert find_space_set("table") is TABLE
     assert ConceptSpaces("counter").space_set is COUNTER
     assert isinstance(ConceptSpaces(TABLE).mixtures["shape"], TrackMixture)
+    assert isinstance(ConceptSpaces(TABLE).mixtures["location"], ModeMixture)
     with pytest.raises(KnowledgeError, match="space set 'kitchen' is not known; known are board, table, counter"):
         ConceptSpaces("kitchen")
     with pytest.raises(KnowledgeError, match="has no space 'smell'; it has colour, shape"):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from learning.concepts import TABLE, ConceptSpaces, Gaussian, IncrementalMixture, TrackMixture, fit_demo
 from learning.concepts.feature_space import Colour, FeatureSpace
-from learning.concepts.track_mixture import PATIENCE
+from learning.concepts.part_mixture import PATIENCE
 from learning.concepts.track_noise import TrackNoise
 from learning.errors import PerceptionError
 from tests.learning.camera_tracks import still_objects
@@ -39,6 +39,28 @@ def test_directions_in_which_things_differ_from_themselves_do_not_tell_kinds_apa
         mixture.update([sighting(0.0, first), sighting(0.4, second)], NOISE)
     assert len(mixture.components) == 2
     assert np.array_equal(mixture.classify(np.array([[0.0, 0.9], [0.4, -0.9]])), [0, 1])
+
+
+def test_what_looked_like_one_kind_is_parted_again_when_more_is_known() -> None:
+    mixture = TrackMixture(Plane)
+    rough = TrackNoise(np.diag([0.04, 0.04]), 4.0)  # a bad first demo: standard deviation 0.1
+    first = mixture.update([sighting(0.0, 0.0), sighting(0.3, 0.0)], rough)
+    assert first == [0, 0]
+    for _ in range(20):
+        numbers = mixture.update([sighting(0.0, 0.0), sighting(0.3, 0.0)], NOISE)
+    assert numbers[0] != numbers[1]
+    assert 0 in numbers  # one of them keeps the number
+
+
+def test_two_found_to_be_one_share_the_number_of_the_larger() -> None:
+    mixture = TrackMixture(Plane)
+    for _ in range(3):
+        mixture.update([sighting(0.0, 0.0)], NOISE)
+    assert mixture.update([sighting(1.0, 0.0)], NOISE) == [1]
+    for _ in range(3):  # things of one kind are found to differ by as much
+        mixture.update([sighting(0.0, 0.0)], TrackNoise(np.diag([100.0, 9.0]), 100.0))
+    assert list(mixture.components) == [0]
+    assert mixture.resolve(1) == 0
 
 
 def test_noise_is_that_within_tracks() -> None:
@@ -122,7 +144,7 @@ def test_a_saved_mixture_goes_on_where_it_stopped(demos: list[list[tuple[float, 
     [
         ("next", 7, "each a concept or an alias"),
         ("aliases", {"1": 1}, "each a concept or an alias|end at a concept"),
-        ("last_seen", {}, "must fit its"),
+        ("parts", [], "each a concept or an alias"),
         ("noise", {"freedom": -1.0, "scatter": [0.0] * 3}, "degrees of freedom"),
         ("noise", {"freedom": 1.0, "scatter": [0.0] * 4}, "scatter must be 3 finite numbers"),
         ("noise", {"freedom": 1.0, "scatter": [-1.0, 0.0, 0.0]}, "variances must be 0 or more"),

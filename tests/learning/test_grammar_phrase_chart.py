@@ -8,9 +8,24 @@ import pytest
 from learning.concept_id import Concept
 from learning.grammar.arrangement import Arrangement
 from learning.grammar.board_elements import BoardElements
-from learning.grammar.innate import ABOVE, CORNER, COUNTS, NEAREST, NEAREST_ONE, RELATIONS, SIDES, UNIT, WITHIN
+from learning.grammar.clauses import Clause, CommandReading
+from learning.grammar.innate import (
+    ABOVE,
+    COLLECTIVE,
+    CORNER,
+    COUNTS,
+    EXTREMES,
+    FURTHEST,
+    NEAREST,
+    NEAREST_ONE,
+    RELATIONS,
+    SIDES,
+    UNIT,
+    WITHIN,
+)
 from learning.grammar.phrase import Feature, Phrase
 from learning.grammar.phrase_chart import Modifier, PhraseChart, Use
+from learning.grammar.reading_tree import tree_of
 from learning.grammar.weights import Weights
 from twin.board import CELLS
 
@@ -82,3 +97,29 @@ def test_nearest_says_nothing_of_the_only_one(scene: BoardElements) -> None:
 
     (entity,) = [p for p in whole(chart_of(scene, (NEAREST_ONE, RED, CUBE), weight), "entity") if p.score > -5.5]
     assert ("ranked", "in vain") in entity.features
+
+
+def test_a_word_for_nearest_to_something_may_be_said_of_the_nearest_one(scene: BoardElements) -> None:
+    found = whole(chart_of(scene, (NEAREST, RED, CUBE)), "entity")
+    assert {child.concept for phrase in found for child in phrase.children} >= {NEAREST_ONE}
+
+
+def test_a_stack_of_things_is_a_stack_in_one_leaf() -> None:
+    two = BoardElements(Arrangement((0, 0), (0, 1), (0, 1), (0, 0), None))
+    (best,) = whole(chart_of(two, (COLLECTIVE, CUBE)), "entity")
+    assert best.meaning == (two.collectives(frozenset(), None), False, False)
+    action = Phrase("action", 2, 3, 0.0, None, (), (), Concept("action", 1), (2,))
+    reading = CommandReading((Clause(action, best, None),), False, False, 1, (), 0.0, ())
+    entity = tree_of(reading, (0, 1, 2)).children[0]
+    assert [(leaf.concept, leaf.first, leaf.last) for leaf in entity.children] == [(COLLECTIVE, 1, 2)]
+
+
+@pytest.mark.parametrize("words", [(LEFT, FURTHEST), (FURTHEST, LEFT)])
+def test_furthest_beside_a_side_is_one_leaf(words: tuple[Concept, Concept]) -> None:
+    row = BoardElements(Arrangement((3, 5), (0, 0), (0, 0), (0, 0), None))
+    entity = next(phrase for phrase in whole(chart_of(row, (*words, CUBE)), "entity") if phrase.score > -0.5)
+    assert cast(tuple[int, bool, bool], entity.meaning)[0] == 0b10  # left is towards +y, the higher column here
+    action = Phrase("action", 3, 4, 0.0, None, (), (), Concept("action", 1), (3,))
+    reading = CommandReading((Clause(action, entity, None),), False, False, 1, (), 0.0, ())
+    leaves = tree_of(reading, (0, 1, 2, 3)).children[0].children
+    assert [(leaf.concept, leaf.first, leaf.last) for leaf in leaves] == [(EXTREMES[2], 1, 2), (CUBE, 3, 3)]

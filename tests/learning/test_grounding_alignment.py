@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from learning.concept_id import Concept
-from learning.grounding.alignment import Alignment
+from learning.grounding.alignment import Alignment, Way
 
 COLOURS = {name: Concept("colour", number) for number, name in enumerate(("rosso", "blu", "verde"))}
 SHAPES = {name: Concept("shape", number) for number, name in enumerate(("cubo", "prisma"))}
@@ -57,3 +57,24 @@ def test_it_survives_a_file_but_for_rounding() -> None:
 def test_counts_that_nobody_can_have_made_are_refused() -> None:
     with pytest.raises(ValueError, match="count of 'cubo'"):
         Alignment.from_json({"cubo": [-1, {}]})
+
+
+def test_what_is_told_part_by_part_is_told_apart_from_what_is_told_as_one() -> None:
+    """Taking is also seen alone; carrying is told as one ("porta"), or as taking and putting ("prendi", "posa")."""
+    carry, take, put = (Concept("action", number) for number in (1, 2, 3))
+    ways = Way(untold=frozenset((take, put))), Way(frozenset((take,)), frozenset((carry,)))
+    told = {("prendi",): 2, ("porta",): 3, ("prendi", "posa"): 1}
+    kinds = [verbs for verbs, often in told.items() for _ in range(often)]
+    rng = np.random.default_rng(1)
+    alignment = Alignment()
+    for _ in range(600):
+        colour = str(rng.choice(list(COLOURS)))
+        verbs = kinds[int(rng.integers(len(kinds)))]
+        words = (verbs[0], "il", colour, *verbs[1:])
+        if verbs == ("prendi",):
+            alignment.observe(words, (COLOURS[colour], take))
+        else:
+            alignment.observe(words, (COLOURS[colour], carry, take, put), None, ways)
+    for word, concept in (("prendi", take), ("porta", carry), ("posa", put)):
+        meanings = alignment.meanings(word)
+        assert max(meanings, key=lambda meaning: meanings[meaning]) == concept

@@ -1,7 +1,7 @@
 """How the words of a sentence may be read."""
 
 from learning.concept_id import Concept
-from learning.grammar.innate import COUNTS, NEAREST, NEAREST_ONE, SIDES, UNIT
+from learning.grammar.innate import COUNTS, EXTREMES, FURTHEST, SIDES, UNIT
 from learning.grammar.weights import Weights
 from learning.grounding.alignment import Alignment
 from learning.grounding.grounding import Grounding
@@ -26,14 +26,24 @@ def meanings(table: UseTable, word: str) -> set[Concept]:
     return {use.concept for use in table.of((word,), ()).uses}
 
 
-def test_a_word_for_nearest_to_something_may_be_said_of_the_nearest_one() -> None:
-    assert {NEAREST, NEAREST_ONE} <= meanings(table_of("vicino", NEAREST, 20), "vicino")
+def test_a_word_for_one_extreme_may_mean_furthest_beside_a_side() -> None:
+    assert FURTHEST in meanings(table_of("più", EXTREMES[2], 20), "più")
 
 
-def test_a_word_seldom_validated_as_nearest_is_not() -> None:
-    table = table_of("vicino", NEAREST, 2)
-    table.grounding.add("vicino", None, 20.0)
-    assert NEAREST_ONE not in meanings(table, "vicino")
+def test_a_word_before_a_unit_may_be_a_number() -> None:
+    table = table_of("passi", UNIT, 60)
+    table.alignment.observe(("due",), (RED,))
+    uses = table.of(("due", "passi"), ()).uses
+    assert set(COUNTS) <= {use.concept for use in uses if use.first == 0}
+
+
+def test_an_open_mind_takes_any_word_without_a_plain_meaning_for_an_action() -> None:
+    table = table_of("metti", RED, 100)
+    for number in (1, 2):
+        table.grounding.add("metti", Concept("shape", number), 100.0)
+    take = Concept("action", 2)
+    assert take not in meanings(table, "metti")
+    assert take in {use.concept for use in table.of(("metti",), (2,), open_minded=True).uses}
 
 
 def test_a_rare_word_for_a_part_of_a_shift_may_be_any_part() -> None:

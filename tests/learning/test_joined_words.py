@@ -25,6 +25,14 @@ def test_beginning_and_ending_come_off_together() -> None:
     assert joined.split(("waputzo", "box")) == (("wa", "put", "zo", "box"), (0, 0, 0, 1))
 
 
+def test_two_stems_are_enough_where_they_are_met_in_several_forms() -> None:
+    joined = heard("take", "put", "move", "see")
+    for word in ("takezo", "putzo", "movezo", "waputzo", "waput", "watakezo", "xsee", "xput"):
+        joined.hear((word,))
+    assert joined.pieces("waputzo") == ("wa", "put", "zo")
+    assert joined.pieces("xput") == ("xput",)
+
+
 def test_two_words_that_look_alike_are_no_parts() -> None:
     joined = heard("in to into on onto side inside")
     assert joined.pieces("inside") == ("inside",)

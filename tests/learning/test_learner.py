@@ -126,6 +126,43 @@ def test_what_is_not_understood_is_explained(taught: Knowledge, release: Release
 
 
 @pytest.mark.parametrize(
+    ("sentence", "named"),
+    [
+        ("🙂", "🙂"),
+        ("ارفع المكعب الأحمر", "المكعب"),
+        ("拿起红色方块", "拿起红色方块"),
+        ("red " * 10_000, "10000 words"),
+        ("pick up the zorgle " * 80, "320 words"),
+        ("zorgle " * 20 + "🙂" * 10_000, "🙂"),
+        ("x" * 100_000, "xxx…"),
+        ("\x00\u202e\t", "empty"),
+    ],
+)
+def test_bad_input_is_answered_shortly_by_what_is_not_understood(
+    taught: Knowledge, release: Release, sentence: str, named: str
+) -> None:
+    percept = percept_of(observe_before(release.one_block_scenes()[0], np.random.default_rng(0)), taught.spaces)
+    reading = Interpreter(taught).interpret(sentence, percept)
+    assert not reading.understood
+    assert named in reading.explanation
+    assert len(reading.explanation) < 1000  # ten words of each sort, the beginning of each: whatever came in
+
+
+def test_words_and_signs_never_heard_are_named_where_the_rest_is_clear(taught: Knowledge, release: Release) -> None:
+    scene = next(each for each in release.one_block_scenes() if release.commands_of(each.number))
+    percept = percept_of(observe_before(scene, np.random.default_rng(0)), taught.spaces)
+    sentence = release.commands_of(scene.number)[0].sentence
+    clear = Interpreter(taught).interpret(sentence, percept)
+    assert clear.understood
+    assert clear.unknown == ()
+    reading = Interpreter(taught).interpret(f"zorgle {sentence} 🙂", percept)
+    assert reading.understood
+    assert reading.unknown == ("zorgle", "🙂")
+    assert "zorgle" in reading.explanation
+    assert "🙂" in reading.explanation
+
+
+@pytest.mark.parametrize(
     ("change", "message"),
     [
         ({"version": 99}, "field 'version' is 99"),

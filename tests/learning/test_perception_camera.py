@@ -39,7 +39,7 @@ def test_every_object_is_found_where_it_stands_with_its_colour_and_size() -> Non
         assert abs((hue - true + 0.5) % 1.0 - 0.5) < 0.03  # shading keeps hue, noise of 2/255 does not
     assert np.allclose(seen.shape.sum(axis=2), 1.0)
     assert seen.visible is not None and seen.visible.all()
-    assert set(seen.features) == {"size", "weight"}
+    assert set(seen.features) == {"size", "weight", "glimpsed_shape"}
     assert np.isnan(seen.features["weight"]).all()  # nothing was lifted
 
 

@@ -85,3 +85,10 @@ def test_every_sentence_about_a_counter_has_a_tree(language: str) -> None:
             gold = gold_sentence(told.truth(), action)
             assert gold.tree is not None
             assert {leaf.element for leaf in gold.leaves} >= {"action", "shape", "colour"}, told.text
+
+
+def test_a_word_that_some_say_of_two_shapes_means_the_one_that_was_there() -> None:
+    entry = {"text": "lift the cup", "language": "en", "annotator": "en_2", "template": "lift: plain", "mistakes": []}
+    for shape in ("cup", "mug"):
+        leaves = gold_sentence(entry, "lift", frozenset((shape,))).leaves
+        assert [leaf.value for leaf in leaves if leaf.element == "shape"] == [shape]

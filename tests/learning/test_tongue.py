@@ -1,5 +1,7 @@
 """A language learned from sentences and what was shown alone: words, function words, and the order of words."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -85,3 +87,30 @@ def test_a_renamed_concept_takes_its_words_along() -> None:
     tongue.rename(Concept("colour", 0), Concept("colour", 9))
     assert Concept("colour", 9) in tongue.meanings("red")
     assert Concept("colour", 0) not in tongue.meanings("red")
+
+
+def test_whether_an_action_has_a_destination_is_learned(spoken: tuple[str, Tongue]) -> None:
+    _, tongue = spoken
+    lifted, moved = tongue.grammar.rules["action_1"], tongue.grammar.rules["action_3"]
+    assert lifted[("nowhere",)] > 20 * lifted[("destination",)]
+    assert moved[("destination",)] > moved[("nowhere",)]
+
+
+def test_little_is_saved_and_it_means_the_same(spoken: tuple[str, Tongue]) -> None:
+    _, tongue = spoken
+    saved = tongue.to_json()
+    assert len(json.dumps(saved, ensure_ascii=False).encode()) < 20_000  # bytes; every count of K would take 60,000
+    again = Tongue.from_json(saved)
+    words = [word for word in tongue.joined.counts if tongue.joined.counts[word] >= 5]
+    assert all(set(again.meanings(word)) == set(tongue.meanings(word)) for word in words)
+
+
+def test_older_files_are_read() -> None:
+    tongue = Tongue()
+    for said, record, scene, _ in table_talk(np.random.default_rng(8), 15, "en", people=3):
+        tongue.learn(said, record, scene)
+    saved = tongue.to_json()
+    saved["correlation"] = tongue.correlation.to_json()
+    saved["grammar"] = {"rules": saved.pop("rules"), "terminals": {}}
+    del saved["junctures"]
+    assert Concept("colour", 0) in Tongue.from_json(saved).meanings("red")

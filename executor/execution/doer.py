@@ -1,0 +1,92 @@
+"""What a robot in its world has to offer so that commands can be carried out: the part that differs between robots."""
+
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+import numpy as np
+
+from executor.errors import InputError
+from executor.execution.answer import OnAmbiguous
+from executor.execution.stopwatch import Stopwatch
+from executor.execution.understood import Understood
+from executor.report import ExecutionReport
+
+if TYPE_CHECKING:
+    from learning import Knowledge
+    from twin import World
+
+
+View = TypeVar("View")
+
+
+class Doer(Protocol[View]):
+    """Understands and carries out steps in one world.
+
+    A *view* is whatever a doer needs to know of how the scene looked once; nobody else looks into it.
+
+    Attributes:
+        stopwatch: Times of the command that is being carried out; restarted at each.
+    """
+
+    stopwatch: Stopwatch
+
+    def look(self) -> View:
+        """Look at the scene as it stands; gives a view."""
+
+    def understand(self, words: tuple[str, ...], view: View, last: int | None, choice: int | None = None) -> Understood:
+        """Understand one step in a view. Nothing moves; what is not acted on has an answer and a reason.
+
+        Args:
+            words: The words.
+            view: How the scene looked.
+            last: Track number of what was handled last, which a reference may mean.
+            choice: Track number of what was meant where several things fit, as the answer to a question.
+        """
+
+    def imagine(self, view: View, understood: Understood) -> View:
+        """The view as it would be after a step: later steps of a sentence are understood in it before any motion."""
+
+    def plan(self, understood: Understood, view: View, sentence: str) -> ExecutionReport:
+        """Plan a step; nothing moves."""
+
+    def carry_out(self, understood: Understood, view: View, sentence: str) -> ExecutionReport:
+        """Clear what is in the way (`understood.blocked`), carry a step out, check it by looking.
+
+        However it ends, the hand is left sound: it holds only what it should.
+        """
+
+    def acts(self, word: str) -> bool:
+        """Whether a word may name an action, so that a step can begin with it."""
+
+    def joins(self, word: str) -> bool:
+        """Whether a word was learned to mean nothing by itself, so that it may stand between steps."""
+
+    def knows(self, word: str) -> bool:
+        """Whether a word was ever heard."""
+
+    def forget(self, knowledge: "Knowledge", understood: Understood, view: View) -> bool:
+        """Let knowledge learn that a step was not what its words say; whether it is understood otherwise now."""
+
+    def resume(self) -> None:
+        """Take over the world as it is, after it was put back to an earlier moment."""
+
+
+def doer_for(
+    world: "World", knowledge: "Knowledge", rng: np.random.Generator, on_ambiguous: OnAmbiguous = OnAmbiguous.ASK
+) -> Doer[Any]:
+    """Give the doer for a robot in its world.
+
+    Raises:
+        InputError: The world is none that sentences are carried out in yet; says which are.
+    """
+    if world.spec.kind == "board" and len(world.robot.joint_names) == 3:
+        from executor.execution.board_doer import BoardDoer
+
+        return BoardDoer(world, knowledge, rng, on_ambiguous)
+    if world.spec.kind == "table" and world.robot.cameras:
+        from executor.tables.table_doer import TableDoer
+
+        return TableDoer(world, knowledge, rng, on_ambiguous)
+    raise InputError(
+        "sentences are carried out on the board by an arm of three joints, and at tables by robots with a camera, not "
+        f"by {world.robot.name} in scene {world.spec.name!r}: use a board scene with three_dof, tabletop, or ordering"
+    )

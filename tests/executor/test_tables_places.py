@@ -1,0 +1,79 @@
+"""Places for things on a table: as the words say, free, and as people would choose them."""
+
+import numpy as np
+import pytest
+
+from executor.tables.places import LEAST_ROOM, TableThings, spots_for
+from learning.concept_id import Concept
+from learning.concepts import TABLE, ConceptSpaces
+from learning.concepts.gaussian import Gaussian
+from learning.grounding.table_scene import BESIDE, OVER, SIDE_PLACES, RestingPlaces, relation_of
+from learning.interpretation.table_interpreter import TableGoal
+
+FAR, NEAR, LEFT, RIGHT = SIDE_PLACES
+EXTENT = np.array([0.06, 0.06, 0.1])
+
+
+def resting() -> RestingPlaces:
+    """A table on which things stood at six places."""
+    found = RestingPlaces()
+    for x in (0.53, 0.77):
+        for y in (-0.25, 0.0, 0.25):
+            found.add(np.array([x, y, 0.05]))
+    return found
+
+
+def spaces() -> ConceptSpaces:
+    """Five directions, as they are learned from things beside and on each other."""
+    known = ConceptSpaces(TABLE)
+    ways = np.array([[1.0, 0, 0], [-1.0, 0, 0], [0, 1.0, 0], [0, -1.0, 0], [0, 0, 1.0]])
+    for way in ways:
+        for _ in range(4):
+            known.mixtures["direction"].update([Gaussian(way, 0.01 * np.eye(3), 10.0)])
+    return known
+
+
+def direction(known: ConceptSpaces, way: list[float]) -> Concept:
+    return next(iter(relation_of(0.25 * np.array(way), known)))
+
+
+def things(*centres: list[float]) -> TableThings:
+    return TableThings(np.array(centres), np.tile(EXTENT, (len(centres), 1)))
+
+
+def test_a_part_of_the_table_is_met_at_a_free_place_well_inside_it() -> None:
+    table, known = things([0.6, 0.0, 0.05], [0.78, 0.25, 0.05]), resting()
+    spots = spots_for(TableGoal(frozenset({FAR, LEFT}), ()), 0, table, ConceptSpaces(TABLE), known)
+    assert spots
+    for spot in spots:
+        assert {FAR, LEFT} <= known.at(spot.position)
+        assert np.linalg.norm(spot.position[:2] - [0.78, 0.25]) > np.hypot(0.06, 0.06) + LEAST_ROOM
+        assert spot.position[2] == pytest.approx(0.05)
+    alone = spots_for(TableGoal(frozenset({NEAR, RIGHT}), ()), 0, table, ConceptSpaces(TABLE), known)[0]
+    assert alone.position[:2] == pytest.approx([0.51, -0.25], abs=0.03)  # a grid of 2 cm
+
+
+@pytest.mark.parametrize("way", [[1.0, 0, 0], [-1.0, 0, 0], [0, 1.0, 0], [0, -1.0, 0]])
+def test_beside_a_thing_is_in_the_direction_that_is_meant_and_not_on_others(way: list[float]) -> None:
+    known, table = spaces(), things([0.5, -0.3, 0.05], [0.65, 0.0, 0.05], [0.9, 0.3, 0.05])
+    meant = frozenset({direction(known, way)})
+    spots = spots_for(TableGoal(meant, (1,)), 0, table, known, resting())
+    assert spots
+    offset = spots[0].position - table.location[1]
+    assert offset[:2] / np.linalg.norm(offset[:2]) == pytest.approx(way[:2], abs=0.27)  # a grid of 15 degrees
+    assert all(meant <= relation_of(spot.position - table.location[1], known) for spot in spots)
+
+
+def test_onto_a_thing_is_on_its_top() -> None:
+    known, table = spaces(), things([0.5, -0.3, 0.05], [0.65, 0.0, 0.05])
+    for above in (direction(known, [0, 0, 1.0]), OVER):
+        (spot,) = spots_for(TableGoal(frozenset({above}), (1,)), 0, table, known, resting())
+        assert spot.onto == 1
+        assert spot.position == pytest.approx([0.65, 0.0, 0.15])
+
+
+def test_where_all_is_full_there_is_no_place() -> None:
+    crowd = [[x, y, 0.05] for x in np.arange(0.3, 1.0, 0.07) for y in np.arange(-0.6, 0.6, 0.07)]
+    table = things([0.6, 0.0, 0.4], *crowd)
+    assert spots_for(TableGoal(frozenset({FAR}), ()), 0, table, ConceptSpaces(TABLE), resting()) == []
+    assert spots_for(TableGoal(frozenset({BESIDE}), (50,)), 0, table, spaces(), resting()) == []
