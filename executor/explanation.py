@@ -73,7 +73,7 @@ class Explanation:
         referents: What its parts are about.
         alternatives: Other ways to understand it, the likeliest first.
         plain: Its tree by grammar and words alone, on one line, without a look at the scene; None where there is none.
-        notes: Words that are not taken to mean what they usually do: no reading in which they do fits the scene so well.
+        notes: Words that are not taken to mean what they usually do: no reading with it fits the scene as well.
         unknown: Words that were never heard.
         confidence: Share of what was understood among all readings; None where readings have no shares.
     """

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from executor.execution.evaluation.verdict import Verdict
 
 
+ROBOTS = ("three_dof", "baxter", "mico_segway")
+
+
 class SuiteName(StrEnum):
     """Commands that should be answered without a motion."""
 
@@ -29,7 +32,9 @@ class Ambiguous(StrEnum):
 
 
 def execution(
-    robot: Annotated[str, typer.Option(help="Robot: three_dof on the board.")] = "three_dof",
+    robot: Annotated[
+        str, typer.Option(help="Robot: three_dof on the board, baxter or mico_segway at a table.")
+    ] = "three_dof",
     commands: Annotated[int | None, typer.Option(min=1, help="How many: 100, or 50 of a suite.")] = None,
     knowledge: Annotated[
         Path | None, typer.Option(help="Use this knowledge; without it, learn from the scripted collection first.")
@@ -47,7 +52,13 @@ def execution(
     ] = None,
     on_ambiguous: Annotated[Ambiguous, typer.Option(help="Ask, or take the best, where several fit.")] = Ambiguous.ASK,
     variety: Annotated[float, typer.Option(min=0.0, max=1.0, help="How often a synonym is said.")] = 0.25,
-    demos: Annotated[int, typer.Option(min=1, help="Demos of the scripted collection.")] = 200,
+    demos: Annotated[
+        int | None,
+        typer.Option(
+            min=1, help="Demos of the scripted collection: 200 of the board, 102 of Baxter's, 112 of the Mico's."
+        ),
+    ] = None,
+    language: Annotated[str, typer.Option(help="Language of the sentences at a table: en or ar.")] = "en",
     cache: Annotated[Path | None, typer.Option(help="Folder for what is learned; else the user's cache.")] = None,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")] = 0,
     failures: Annotated[int, typer.Option(min=0, help="How many failures to list.")] = 10,
@@ -64,21 +75,28 @@ def execution(
     Example: showtell evaluate execution --robot three_dof --commands 100 --seed 1
 
     Example: showtell evaluate execution --train-robots train-robots/ --commands 200
+
+    Example: showtell evaluate execution --robot baxter --commands 100
     """
     from executor.collection import in_processes
     from executor.errors import InputError
     from executor.execution.evaluation.board_cases import board_cases, written_cases
-    from executor.execution.evaluation.learned import from_collection, from_release, given
+    from executor.execution.evaluation.learned import DEMOS, from_collection, from_release, given
     from executor.execution.evaluation.release_cases import SplitRelease, release_cases
     from executor.execution.evaluation.suite_cases import suite_cases
     from executor.execution.evaluation.verdict import Job, run_case
     from executor.files import existing
 
     out = Output(as_json)
-    if robot != "three_dof":
-        raise InputError(f"commands are evaluated with the robot three_dof so far, not {robot!r}")
+    if robot not in ROBOTS:
+        raise InputError(f"commands are evaluated with {', '.join(ROBOTS)}, not with {robot!r}")
+    if robot != "three_dof" and any(each is not None for each in (sentences, train_robots, suite, minutes)):
+        raise InputError("--sentences, --train-robots, --suite and --minutes are for three_dof so far; leave them out")
     if sum(each is not None for each in (sentences, train_robots, suite, minutes)) > 1:
         raise InputError("give one of --sentences, --train-robots, --suite and --minutes")
+    if robot != "three_dof":
+        _at_table(out, robot, commands or 100, knowledge, cache, demos, language, jobs, failures, seed)
+        return
     split = None if train_robots is None else SplitRelease.load(train_robots)
     if knowledge is not None:
         learned = given(existing(knowledge, "knowledge file"))
@@ -86,8 +104,8 @@ def execution(
         out.note(f"learning from {len(split.learned)} scenes of the groups that are not asked (kept for the next time)")
         learned = from_release(split, cache, seed=0)
     else:
-        with out.progress("showing and learning, once", demos) as advance:
-            learned = from_collection(cache, demos, 0, jobs, advance)
+        with out.progress("showing and learning, once", demos or DEMOS) as advance:
+            learned = from_collection(cache, demos or DEMOS, 0, jobs, advance)
     if minutes is not None:
         _endure(out, learned, minutes, seed, variety)
         return
@@ -103,6 +121,46 @@ def execution(
     with out.progress("commands", len(work)) as advance:
         done = sorted(in_processes(run_case, work, jobs, advance), key=lambda pair: pair[0])
     _tell(out, [verdict for _, verdict in done], failures, seed, learned)
+
+
+def _at_table(
+    out: Output,
+    robot: str,
+    commands: int,
+    knowledge: Path | None,
+    cache: Path | None,
+    demos: int | None,
+    language: str,
+    jobs: int,
+    failures: int,
+    seed: int,
+) -> None:
+    """Carry out commands at a table."""
+    from executor.errors import InputError
+    from executor.execution.evaluation.learned import given
+    from executor.files import existing
+    from executor.tables.exam import answers
+    from executor.tables.learned import LANGUAGES, from_table_collection, usual_demos
+
+    if language not in LANGUAGES:
+        raise InputError(f"--language {language!r}: people at tables speak {', '.join(LANGUAGES)}")
+    if knowledge is not None:
+        learned = given(existing(knowledge, "knowledge file"))
+    else:
+        with out.progress("showing and learning, once", usual_demos(robot, demos)) as advance:
+            learned = from_table_collection(robot, cache, demos, 0, jobs, advance)
+    with out.progress("commands", commands) as advance:
+        done = answers(
+            robot,
+            str(learned.path),
+            commands,
+            seed,
+            language=language,
+            known=learned.heard,
+            jobs=jobs,
+            on_answer=advance,
+        )
+    _tell(out, [each.verdict() for each in done], failures, seed, learned)
 
 
 def _endure(out: Output, learned: "Learned", minutes: float, seed: int, variety: float) -> None:

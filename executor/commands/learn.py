@@ -35,6 +35,7 @@ def learn(
     Example: showtell learn demos/ -o knowledge.json
     """
     from executor.errors import InputError
+    from executor.execution.knowledge_lock import locked
     from executor.files import check_place
     from learning import Knowledge, Learner
 
@@ -49,7 +50,8 @@ def learn(
     else:
         lessons = _from_release(out, learner, train_robots, seed)
     learner.settle()
-    learner.knowledge.save(output)
+    with locked(output):
+        learner.knowledge.save(output)
     _tell(out, learner, output, before, lessons, seed)
 
 

@@ -17,6 +17,11 @@ DEMOS = {"baxter": 102, "mico_segway": 112}
 LANGUAGES = ("en", "ar")
 
 
+def usual_demos(robot: str, demos: int | None) -> int:
+    """How many demos are learned from."""
+    return DEMOS[robot] if demos is None else demos
+
+
 def from_table_collection(
     robot: str, folder: Path | None, demos: int | None, seed: int, jobs: int, on_demo: Callable[[], None]
 ) -> Learned:
@@ -30,7 +35,7 @@ def from_table_collection(
         jobs: Processes; 0 takes one a core.
         on_demo: Called after every demo that was recorded.
     """
-    count = DEMOS[robot] if demos is None else demos
+    count = usual_demos(robot, demos)
     home = new_folder(user_folder("execution") if folder is None else folder)
     name = f"{robot}_{count}_{seed}"
     path, said = home / f"{name}.json", home / f"{name}_sentences.json"

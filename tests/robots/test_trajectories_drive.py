@@ -35,7 +35,8 @@ def test_any_pose_is_reached_exactly_without_slip(start: np.ndarray, goal: np.nd
     assert motion.success
     assert motion.trajectory is not None
     trajectory = motion.trajectory
-    np.testing.assert_allclose(trajectory.at(0.0)[0], start, atol=1e-12)
+    # What is nearer than a nanometre is there already: then the motion starts where it ends.
+    np.testing.assert_allclose(trajectory.at(0.0)[0], start, atol=1e-9)
     end, twist, acceleration = trajectory.at(trajectory.duration)
     np.testing.assert_array_equal(end[:2], goal[:2])
     assert math.remainder(end[2] - goal[2], 2 * math.pi) == pytest.approx(0.0, abs=1e-12)
