@@ -54,7 +54,7 @@ def execution(
     variety: Annotated[float, typer.Option(min=0.0, max=1.0, help="How often a synonym is said.")] = 0.25,
     demos: Annotated[
         int | None,
-        typer.Option(
+        typer.Option(min=1, help="Demos to learn from: 200 of the board, 102 of Baxter's, 112 of the Mico's."),
             min=1, help="Demos of the scripted collection: 200 of the board, 102 of Baxter's, 112 of the Mico's."
         ),
     ] = None,
