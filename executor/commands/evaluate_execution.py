@@ -55,8 +55,6 @@ def execution(
     demos: Annotated[
         int | None,
         typer.Option(min=1, help="Demos to learn from: 200 of the board, 102 of Baxter's, 112 of the Mico's."),
-            min=1, help="Demos of the scripted collection: 200 of the board, 102 of Baxter's, 112 of the Mico's."
-        ),
     ] = None,
     language: Annotated[str, typer.Option(help="Language of the sentences at a table: en or ar.")] = "en",
     cache: Annotated[Path | None, typer.Option(help="Folder for what is learned; else the user's cache.")] = None,
