@@ -1,0 +1,56 @@
+"""Looks at a table: things keep their numbers from look to look, and a step can be imagined."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from executor.tables.table_view import TableView
+from learning.perception.observation import Observation
+
+RED, BLUE = [0.0, 0.8, 0.5], [0.62, 0.8, 0.5]
+
+
+def look(*things: tuple[list[float], list[float]]) -> Observation:
+    """What a camera saw of things at rest: centre and colour of each, over six frames."""
+    frames, count = 6, len(things)
+    return Observation(
+        times=0.1 * np.arange(frames),
+        gripper_location=np.tile([0.3, 0.3, 0.5], (frames, 1)),
+        gripper_closed=np.zeros(frames, dtype=bool),
+        object_ids=np.arange(count),
+        location=np.tile([centre for centre, _ in things], (frames, 1, 1)).astype(float),
+        colour=np.tile([colour for _, colour in things], (frames, 1, 1)).astype(float),
+        shape=np.full((frames, count, 33), 1.0 / 33.0),
+        extent=np.tile([0.05, 0.05, 0.1], (frames, count, 1)),
+        gripper_opening=np.full(frames, 0.08),
+    )
+
+
+def test_what_stays_or_is_carried_keeps_its_number_and_what_is_new_gets_another() -> None:
+    first = TableView.of(look(([0.5, 0.2, 0.05], RED), ([0.6, -0.2, 0.05], BLUE)))
+    assert first.numbers == (0, 1)
+    # The next look finds them in another order, the red one carried away, and a second blue one.
+    now = TableView.of(look(([0.6, -0.2, 0.05], BLUE), ([0.8, 0.0, 0.05], BLUE), ([0.75, 0.25, 0.05], RED)), first)
+    assert now.numbers == (1, 2, 0)
+    assert now.index_of(0) == 2 and now.index_of(7) is None
+
+
+def test_a_step_is_imagined_in_the_hand_or_at_its_place() -> None:
+    view = TableView.of(look(([0.5, 0.2, 0.05], RED), ([0.6, -0.2, 0.05], BLUE)))
+    taken = view.with_moved(0, None, holds=True)
+    assert taken.held == 0 and taken.things.location[0, 2] > 0.1
+    put = taken.with_moved(0, np.array([0.7, 0.0, 0.05]), holds=False)
+    assert put.held is None
+    assert np.allclose(put.things.location[0], [0.7, 0.0, 0.05])
+    assert np.allclose(put.observation.location[:, 0], [0.7, 0.0, 0.05])
+    assert np.allclose(put.things.location[1], view.things.location[1])
+    assert np.allclose(view.things.location[0], [0.5, 0.2, 0.05]), "the first look is left as it was"
+
+
+def test_nothing_is_felt_by_an_open_hand() -> None:
+    view = TableView.of(look(([0.5, 0.2, 0.05], RED)))
+    assert view.held is None and not view.feels
+    closed = replace(
+        look(([0.3, 0.3, 0.5], RED)), gripper_closed=np.ones(6, dtype=bool), gripper_opening=np.full(6, 0.04)
+    )
+    assert TableView.of(closed).held == 0

@@ -1,0 +1,62 @@
+"""What words nearly say, where nothing is just what they say."""
+
+import numpy as np
+
+from learning.concept_id import Concept
+from learning.concepts import TABLE, ConceptSpaces
+from learning.concepts.gaussian import Gaussian
+from learning.grammar.rcl import RclNode
+from learning.grounding.table_scene import TableScene
+from learning.interpretation.nearly import NearlyDenotation
+
+MEANS = {"red": [0.6, 0.0, 0.4], "blue": [-0.5, -0.4, 0.4], "green": [-0.3, 0.6, 0.4]}
+
+
+def colours() -> tuple[ConceptSpaces, dict[str, Concept]]:
+    """Three colours, seen often."""
+    spaces = ConceptSpaces(TABLE)
+    for _ in range(6):
+        spaces.mixtures["colour"].update([Gaussian(np.array(m), 4e-4 * np.eye(3), 10.0) for m in MEANS.values()])
+    mixture = spaces.mixtures["colour"]
+    names = {name: Concept("colour", int(mixture.classify(np.array([mean]))[0])) for name, mean in MEANS.items()}
+    return spaces, names
+
+
+def denoted(values: list[list[float]], word: Concept, spaces: ConceptSpaces) -> int:
+    """Things that a colour word denotes, as a mask."""
+    numbers = [int(spaces.mixtures["colour"].classify(np.array([v]))[0]) if np.isfinite(v[0]) else None for v in values]
+    scene = TableScene(
+        looks=tuple(frozenset() if n is None else frozenset({Concept("colour", n)}) for n in numbers),
+        places=(frozenset(),) * len(values),
+        relations={},
+        moved=-1,
+        action=0,
+        parts=(),
+        goal=frozenset(),
+        goal_relations={},
+        ground=None,
+        unseen={},
+    )
+    entity = RclNode("entity", None, 1, 1, (RclNode("colour", word, 1, 1),))
+    return NearlyDenotation(scene, {"colour": np.array(values)}, spaces, {}).things(entity)
+
+
+def test_what_is_just_so_is_meant_alone() -> None:
+    spaces, names = colours()
+    assert denoted([MEANS["red"], MEANS["blue"]], names["red"], spaces) == 0b01
+
+
+def test_a_thing_between_two_colours_is_meant_where_none_is_just_so() -> None:
+    spaces, names = colours()
+    between = (0.49 * np.array(MEANS["red"]) + 0.51 * np.array(MEANS["blue"])).tolist()
+    assert denoted([between, MEANS["green"]], names["red"], spaces) == 0b01
+
+
+def test_nothing_is_meant_where_all_is_far_from_what_is_said() -> None:
+    spaces, names = colours()
+    assert denoted([MEANS["blue"], MEANS["green"]], names["red"], spaces) == 0
+
+
+def test_what_was_not_seen_may_be_anything() -> None:
+    spaces, names = colours()
+    assert denoted([MEANS["blue"], [np.nan] * 3], names["red"], spaces) == 0b10
