@@ -105,7 +105,8 @@ class ExecutionReport:
         if self.tree is not None:
             lines.append(self.tree.draw(self.words, 1))
         for each in self.referents:
-            meant = f"object {' or '.join(map(str, each.things))}" if each.things else "a place"
+            nothing = "a place" if each.role == "destination" else "nothing here"
+            meant = f"object {' or '.join(map(str, each.things))}" if each.things else nothing
             lines.append(f"  {each.role} “{each.words}”: {meant}")
         if self.plan is not None:
             lines += [f"  {number}. {line}" for number, line in enumerate(self.plan.lines(), start=1)]
