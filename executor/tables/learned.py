@@ -12,8 +12,9 @@ from learning.grounding.ngrams import words_of
 from learning.perception.stage import perceive_demos
 from robots.cache import user_folder
 
-DEMOS = {"baxter": 102, "mico_segway": 112}
-"""Demos that are recorded where nobody says how many: with each thing of the tabletop twice, half of the counter's."""
+DEMOS = {"baxter": 102, "mico_segway": 224}
+"""Demos that are recorded where nobody says how many: each thing of the tabletop twice, each action with each thing of the
+counter once."""
 LANGUAGES = ("en", "ar")
 
 
