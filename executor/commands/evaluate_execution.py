@@ -54,7 +54,7 @@ def execution(
     variety: Annotated[float, typer.Option(min=0.0, max=1.0, help="How often a synonym is said.")] = 0.25,
     demos: Annotated[
         int | None,
-        typer.Option(min=1, help="Demos to learn from: 200 of the board, 102 of Baxter's, 224 of the Mico's."),
+        typer.Option(min=1, help="Demos to learn from: 200 (board), 102 (Baxter) or 224 (Mico)."),
     ] = None,
     language: Annotated[str, typer.Option(help="Language of the sentences at a table: en or ar.")] = "en",
     cache: Annotated[Path | None, typer.Option(help="Folder for what is learned; else the user's cache.")] = None,
