@@ -13,8 +13,8 @@ from learning.perception.stage import perceive_demos
 from robots.cache import user_folder
 
 DEMOS = {"baxter": 102, "mico_segway": 224}
-"""Demos that are recorded where nobody says how many: each thing of the tabletop twice, each action with each thing of the
-counter once."""
+"""Demos that are recorded where nobody says how many: each thing of the tabletop twice; at the counter each action with
+each thing once."""
 LANGUAGES = ("en", "ar")
 
 
