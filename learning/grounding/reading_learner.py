@@ -39,7 +39,7 @@ MOST_WORDS = 40
 """Words that may mean something in the longest sentence that is read; the time grows with their third power."""
 LONGEST = 300
 """Words of the longest sentence that is looked at."""
-REPLAYS = 2
+REPLAYS = 1
 """Earlier sentences that are read again after a new one."""
 REALIGNED = 20
 """Earlier sentences that are aligned again after a new one."""
