@@ -1,6 +1,6 @@
 """What an execution reports: what was understood, what was done, and whether it came out right."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from executor.execution.answer import Answer
@@ -157,6 +157,18 @@ def report_of(understood: Understood, sentence: str) -> ExecutionReport:
         goal=understood.goals[0] if understood.goals else None,
         goals=understood.goals,
     )
+
+
+def answer_of(outcome: Outcome | None) -> Answer:
+    """How a command is answered that came out so."""
+    if outcome is None or outcome.doubt:
+        return Answer.UNCERTAIN
+    return Answer.DONE if outcome.right else Answer.FAILED
+
+
+def told(report: ExecutionReport, answer: Answer, reason: str) -> ExecutionReport:
+    """A report with how it ended, and why."""
+    return replace(report, answer=answer, reason=reason, explanation=joined(report.explanation, reason))
 
 
 def joined(*parts: str) -> str:

@@ -1,13 +1,13 @@
 """`showtell do`: execute commands on the twin."""
 
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from executor.commands.output import FAILED, Json, Output, Seed
+from executor.execution.answer import OnAmbiguous
 
 if TYPE_CHECKING:
     from executor.executor import Executor
@@ -16,13 +16,6 @@ if TYPE_CHECKING:
 
 PICTURE_SIZE = (480, 360)
 """Width and height of a view [pixels]."""
-
-
-class Ambiguous(StrEnum):
-    """What to do where several things fit."""
-
-    ASK = "ask"
-    BEST = "best"
 
 
 def do(
@@ -37,8 +30,8 @@ def do(
     robot: Annotated[str | None, typer.Option(help="Robot to use instead of the scene's own.")] = None,
     plan_only: Annotated[bool, typer.Option("--plan-only", help="Stop after the plan; nothing moves.")] = False,
     on_ambiguous: Annotated[
-        Ambiguous, typer.Option(help="Where several things fit: ask which, or take the best.")
-    ] = Ambiguous.ASK,
+        OnAmbiguous, typer.Option(help="Where several things fit: ask which, or take the best.")
+    ] = OnAmbiguous.ASK,
     clear: Annotated[bool, typer.Option("--clear", help="Put aside what is in the way.")] = False,
     picture: Annotated[Path | None, typer.Option(help="Write a picture of before and after.")] = None,
     seed: Seed = 0,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from executor.commands.output import FAILED, Json, Output, Seed
+from executor.execution.answer import OnAmbiguous
 
 if TYPE_CHECKING:
     from executor.execution.evaluation.learned import Learned
@@ -22,13 +23,6 @@ class SuiteName(StrEnum):
     AMBIGUOUS = "ambiguous"
     IMPOSSIBLE = "impossible"
     UNKNOWN_WORD = "unknown-word"
-
-
-class Ambiguous(StrEnum):
-    """What to do where several things fit."""
-
-    ASK = "ask"
-    BEST = "best"
 
 
 def execution(
@@ -50,7 +44,9 @@ def execution(
     minutes: Annotated[
         float | None, typer.Option(min=0.1, help="Commands without a pause for so many simulated minutes.")
     ] = None,
-    on_ambiguous: Annotated[Ambiguous, typer.Option(help="Ask, or take the best, where several fit.")] = Ambiguous.ASK,
+    on_ambiguous: Annotated[
+        OnAmbiguous, typer.Option(help="Ask, or take the best, where several fit.")
+    ] = OnAmbiguous.ASK,
     variety: Annotated[float, typer.Option(min=0.0, max=1.0, help="How often a synonym is said.")] = 0.25,
     demos: Annotated[
         int | None,

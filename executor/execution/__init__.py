@@ -4,5 +4,5 @@
 - `Doer` is what a robot in its world has to offer: it understands one step, carries it out, and leaves its hand sound;
   `BoardDoer` is that of the board. `doer_for` chooses it.
 - `steps_of` splits a command into steps; `History` goes back to before a command; `Session` is a dialogue.
-- `marked_wrong` lets knowledge forget how it came to a wrong deed; `locked` keeps two programs off one file.
+- `unlearn` lets knowledge forget how it came to a wrong deed; `locked` keeps two programs off one file.
 """

@@ -12,7 +12,7 @@ from executor.execution.clearing import carrying_action, put_aside
 from executor.execution.marking import Deed, unlearn
 from executor.execution.understood import Understood
 from executor.goal_runner import GoalRunner
-from executor.report import ExecutionReport, Outcome, joined, report_of
+from executor.report import ExecutionReport, answer_of, joined, report_of, told
 from executor.sight import Sight
 from learning.concept_id import ACTION_SPACE
 from learning.grammar.arrangement import Arrangement
@@ -83,8 +83,8 @@ class BoardDoer:
         try:
             plan = self.runner.plan(understood.goals[0], Sight.of(view.observation))
         except RefusalError as refusal:
-            return _told(report, Answer.IMPOSSIBLE, str(refusal))
-        return _told(replace(report, plan=plan), Answer.PLANNED, "this is the plan")
+            return told(report, Answer.IMPOSSIBLE, str(refusal))
+        return told(replace(report, plan=plan), Answer.PLANNED, "this is the plan")
 
     def carry_out(self, understood: Understood, view: BoardView, sentence: str) -> ExecutionReport:
         """Carry out a step; see `Doer`."""
@@ -102,13 +102,13 @@ class BoardDoer:
             try:
                 run = self.runner.carry_out(goal, sight)
             except RefusalError as refusal:
-                return _told(report, Answer.FAILED if moved else Answer.IMPOSSIBLE, str(refusal))
+                return told(report, Answer.FAILED if moved else Answer.IMPOSSIBLE, str(refusal))
             moved = True
             report = replace(
                 report, goal=goal, plan=run.plan, outcome=run.outcome, attempts=report.attempts + run.attempts
             )
             said = "; ".join(part for part in (run.note, run.outcome.explanation if run.outcome else "") if part)
-            report = _told(report, answer_of(run.outcome), said)
+            report = told(report, answer_of(run.outcome), said)
             if not report.success:
                 return report
         return report
@@ -144,7 +144,7 @@ class BoardDoer:
         try:
             action = carrying_action(self.knowledge)
         except RefusalError as refusal:
-            return _told(report, Answer.IMPOSSIBLE, str(refusal)), False
+            return told(report, Answer.IMPOSSIBLE, str(refusal)), False
         done: list[int] = []
         for number in understood.blocked:
             try:
@@ -152,27 +152,16 @@ class BoardDoer:
                 run = self.runner.carry_out(goal, sight)
             except RefusalError as refusal:
                 answer = Answer.FAILED if done else Answer.IMPOSSIBLE
-                return _told(report, answer, f"what is in the way cannot be cleared: {refusal}"), False
+                return told(report, answer, f"what is in the way cannot be cleared: {refusal}"), False
             report = replace(report, plan=run.plan, outcome=run.outcome, attempts=report.attempts + run.attempts)
             if run.outcome is None or not run.outcome.right:
                 said = run.outcome.explanation if run.outcome else ""
-                return _told(report, answer_of(run.outcome), f"clearing what is in the way: {said}"), False
+                return told(report, answer_of(run.outcome), f"clearing what is in the way: {said}"), False
             done.append(number)
             report = replace(report, cleared=tuple(done))
             sight = Sight.of(self.runner.look())
         many = f"{len(done)} block{'s' if len(done) > 1 else ''}"
         return replace(report, explanation=joined(report.explanation, f"put {many} out of the way")), True
-
-
-def answer_of(outcome: Outcome | None) -> Answer:
-    """How a command is answered that came out so."""
-    if outcome is None or outcome.doubt:
-        return Answer.UNCERTAIN
-    return Answer.DONE if outcome.right else Answer.FAILED
-
-
-def _told(report: ExecutionReport, answer: Answer, reason: str) -> ExecutionReport:
-    return replace(report, answer=answer, reason=reason, explanation=joined(report.explanation, reason))
 
 
 def _moved(observation: "Observation", object_id: int, position: FloatArray | None) -> "Observation":

@@ -16,7 +16,7 @@ from executor.execution.answer import Answer, OnAmbiguous
 from executor.execution.stopwatch import Stopwatch
 from executor.execution.understood import Option, Referent, Understood, offer, parts, question
 from executor.follow import wait
-from executor.report import ExecutionReport, Outcome, joined, report_of
+from executor.report import ExecutionReport, Outcome, answer_of, report_of, told
 from executor.tables.places import Spot, spots_for
 from executor.tables.table_names import TableNames
 from executor.tables.table_view import TableView, alike
@@ -140,7 +140,7 @@ class TableDoer:
         report = report_of(understood, sentence)
         goal = understood.goals[0]
         where = "it is done where the thing is" if goal.position is None else f"it goes to {_metres(goal.position)}"
-        return _told(report, Answer.PLANNED, where)
+        return told(report, Answer.PLANNED, where)
 
     def carry_out(self, understood: Understood, view: TableView, sentence: str) -> ExecutionReport:
         """Carry out a step; see `Doer`."""
@@ -151,7 +151,7 @@ class TableDoer:
         thing = view.index_of(goal.object_id)
         real = None if thing is None else self._real(view, thing)
         if thing is None or real is None:
-            return _told(report, Answer.IMPOSSIBLE, "the thing that is meant was lost from sight")
+            return told(report, Answer.IMPOSSIBLE, "the thing that is meant was lost from sight")
         begun = self.world.time
         with self.stopwatch.part("move"), self._timed():
             played, spot = self._play(understood.reading.action, goal, real, understood.spots)
@@ -160,14 +160,13 @@ class TableDoer:
         self.stopwatch.add("simulated", self.world.time - begun)
         report = replace(report, attempts=1)
         if self.world.time == begun:
-            return _told(report, Answer.IMPOSSIBLE, played.reason)
+            return told(report, Answer.IMPOSSIBLE, played.reason)
         now = self.look()
         if not played.success:
             outcome = Outcome(False, None, self._disturbed(thing, view, now), played.reason)
-            return _told(replace(report, outcome=outcome), Answer.FAILED, played.reason)
+            return told(replace(report, outcome=outcome), Answer.FAILED, played.reason)
         outcome = self._judge(goal, thing, view, now, spot)
-        answer = Answer.UNCERTAIN if outcome.doubt else Answer.DONE if outcome.right else Answer.FAILED
-        return _told(replace(report, outcome=outcome), answer, outcome.explanation)
+        return told(replace(report, outcome=outcome), answer_of(outcome), outcome.explanation)
 
     def acts(self, word: str) -> bool:
         """Whether a word may name an action."""
@@ -430,10 +429,6 @@ def _referents(reading: TableReading, view: TableView) -> tuple[Referent, ...]:
             said = " ".join(reading.words[node.first - 1 : node.last])
             found.append(Referent(role, said, node.first, node.last, tuple(view.numbers[each] for each in things)))
     return tuple(found)
-
-
-def _told(report: ExecutionReport, answer: Answer, reason: str) -> ExecutionReport:
-    return replace(report, answer=answer, reason=reason, explanation=joined(report.explanation, reason))
 
 
 def _metres(position: FloatArray) -> str:

@@ -23,6 +23,8 @@ from learning.perception.observation import Observation
 from learning.perception.tracks import anchors
 from robots.pose import FloatArray
 
+NOBODY = -1
+"""Index of the moved thing where nothing moved."""
 PLACE_SPACE = "place"
 SIDE_PLACES = tuple(Concept(PLACE_SPACE, number) for number in range(4))
 """Towards +x (away from the robot), -x, +y (to the left) and -y, as seen from the middle of where things rest."""
@@ -304,6 +306,30 @@ def _unseen(numbers: Mapping[str, NDArray[np.int64]]) -> dict[str, int]:
         if np.any(missing):
             found[name] = sum(1 << int(index) for index in np.flatnonzero(missing))
     return found
+
+
+def still_record(
+    observation: Observation, spaces: ConceptSpaces, places: FloatArray, held: int | None = None
+) -> TableRecord:
+    """Keep of a table what can be spoken of while nothing is moved.
+
+    Args:
+        observation: What is seen.
+        spaces: Concepts.
+        places: Where things are, (N, 3) [m].
+        held: Index of what is in the hand.
+    """
+    return TableRecord(
+        looks=dict(measured_looks(observation, spaces)),
+        first=places,
+        last=places,
+        moved=NOBODY if held is None else held,
+        held=held is not None,
+        brought=False,
+        action=0,
+        parts=(),
+        sides=sides_of(observation),
+    )
 
 
 def _numbers(embedded: FloatArray, name: str, spaces: ConceptSpaces) -> NDArray[np.int64]:

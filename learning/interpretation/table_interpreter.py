@@ -1,13 +1,13 @@
 """From a sentence and what the camera sees of a table to what is to be done with which thing, and where it goes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from learning.concept_id import REFERENCE, Concept
 from learning.grammar.rcl import RclNode
 from learning.grounding.scripts import script_of
-from learning.grounding.table_scene import PLACE_SPACE, TableRecord, TableScene, measured_looks, sides_of
+from learning.grounding.table_scene import PLACE_SPACE, TableRecord, TableScene, still_record
 from learning.grounding.tongue import Tongue
 from learning.interpretation.interpretation import listed
 from learning.interpretation.nearly import NearlyDenotation
@@ -111,31 +111,20 @@ class TableInterpreter:
             things = (held,)  # what is in the hand is what is put down, however little of it is seen
         goal = None if meant.goal is None else TableGoal(meant.goal[0], _indices(meant.goal[1]))
         reading = TableReading(words, tree, action, things, goal, unknown, "")
-        return TableReading(words, tree, action, things, goal, unknown, self._said(reading, meant))
+        return replace(reading, explanation=self._said(reading, meant))
 
     def scene(self, observation: Observation, held: int | None = None) -> TableScene:
         """What the camera sees, in the learner's symbols; nothing is shown in it."""
-        knowledge = self.knowledge
-        _, last = anchors(observation)
-        record = TableRecord(
-            looks=dict(measured_looks(observation, knowledge.spaces)),
-            first=last,
-            last=last,
-            moved=-1 if held is None else held,
-            held=held is not None,
-            brought=False,
-            action=0,
-            parts=(),
-            sides=sides_of(observation),
-        )
-        language = knowledge.table_language
-        return language.scene(record, knowledge.spaces)
+        return self.knowledge.table_language.scene(self._record(observation, held), self.knowledge.spaces)
 
     def _denotation(self, observation: Observation, held: int | None) -> TableDenotation:
         """What words denote in what is seen."""
-        knowledge = self.knowledge
-        looks = dict(measured_looks(observation, knowledge.spaces))
-        return NearlyDenotation(self.scene(observation, held), looks, knowledge.spaces, knowledge.table_language.sorts)
+        spaces, language = self.knowledge.spaces, self.knowledge.table_language
+        record = self._record(observation, held)
+        return NearlyDenotation(language.scene(record, spaces), record.looks, spaces, language.sorts)
+
+    def _record(self, observation: Observation, held: int | None) -> TableRecord:
+        return still_record(observation, self.knowledge.spaces, anchors(observation)[1], held)
 
     def _starts_held(self, action: int) -> bool:
         return self.knowledge.spaces.actions[action].states[0].holds

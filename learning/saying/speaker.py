@@ -8,7 +8,7 @@ from learning.grammar.viterbi import ViterbiGrammar
 from learning.graphs.action_states import shown_action
 from learning.grounding.ngrams import words_of
 from learning.grounding.reading_learner import ReadingLearner
-from learning.grounding.table_scene import TableRecord, TableScene, measured_looks, sides_of, table_record
+from learning.grounding.table_scene import TableScene, still_record, table_record
 from learning.knowledge import Knowledge
 from learning.perception import Observation, perceive, percept_of
 from learning.perception.tracks import anchors
@@ -16,9 +16,6 @@ from learning.saying.board_speaker import BoardSpeaker, read_thing
 from learning.saying.saying import Saying
 from learning.saying.table_speaker import TableSpeaker
 from learning.saying.word_grammar import word_grammar
-
-NOBODY = -1
-"""Index of the moved thing where nothing moved."""
 
 
 class Speaker:
@@ -116,8 +113,5 @@ def shown_scene(knowledge: Knowledge, observation: Observation) -> TableScene:
 
 def still_scene(knowledge: Knowledge, observation: Observation) -> TableScene:
     """How things are at a table at the beginning, in symbols; nothing is moved."""
-    spaces, language = knowledge.spaces, knowledge.table_language
-    first, last = anchors(observation)
-    looks = dict(measured_looks(observation, spaces))
-    record = TableRecord(looks, first, last, NOBODY, False, False, 0, (), sides_of(observation))
-    return language.scene(record, spaces)
+    record = still_record(observation, knowledge.spaces, anchors(observation)[0])
+    return knowledge.table_language.scene(record, knowledge.spaces)
