@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any
 
-from learning.grammar.innate import ABOVE, EXTREMES, NEAREST_ONE, SIDES
+from learning.grammar.innate import ABOVE, EXTREMES, FURTHEST, NEAREST_ONE, SIDES
 from learning.grammar.phrase import Feature
 from learning.saved_numbers import saved_count, saved_number
 
@@ -53,13 +53,16 @@ PRIORS: dict[Feature, float] = {
     ("modified", "variant 1"): -0.5,
     ("modified", "variant 2"): -0.5,
     ("modified", "again"): -0.5,
-    **{("ranked", str(rank)): -1.0 for rank in (*EXTREMES, NEAREST_ONE)},
+    **{("ranked", str(rank)): -1.0 for rank in (*EXTREMES, FURTHEST, NEAREST_ONE)},
     # A command is meant to allow one move.
     ("moves", "2"): -0.7,
     ("moves", "3"): -1.1,
     **{("moves", str(2**power)): -0.7 * power for power in range(2, 14)},
 }
 """Innate expectations about how things are said, the same for every language."""
+NEVER_PRAISED = frozenset({("modified", "in vain"), ("ranked", "in vain")})
+"""Features of saying what tells nothing. Their weights may fall but never rise above their priors: where few things
+look alike much is said in vain, and a function word would be taken for a rank that is nearly always true."""
 
 
 class Weights:
@@ -89,7 +92,8 @@ class Weights:
             if abs(step) < 1e-6:
                 continue
             self.squares[feature] += step * step
-            self.learned[feature] = weight + STEP * step / math.sqrt(self.squares[feature] + 1.0)
+            weight += STEP * step / math.sqrt(self.squares[feature] + 1.0)
+            self.learned[feature] = min(weight, 0.0) if feature in NEVER_PRAISED else weight
 
     def rename(self, old: str, new: str) -> None:
         """Rename the features about a concept; a feature that exists already keeps its weight."""

@@ -140,10 +140,15 @@ class Alignment:
 
 
 def _spread(rows: Sequence[Sequence[float]], meanings: Sequence[Meaning], way: Way) -> tuple[float, list[list[float]]]:
-    """Log likelihood of a way of speaking, and of each word the probability of each meaning in it."""
+    """Log odds of a way of speaking, and of each word the probability of each meaning in it.
+
+    Every meaning has the same prior in all ways, so the way in which more can be told is the likelier one. With a prior
+    that is spread over what is open in a way it would be the one in which less can be told, more so the longer the
+    sentence; but who tells of the parts says more words.
+    """
     open_ones = [each not in way.untold for each in meanings]
     table = []
-    score = -len(rows) * math.log(NOTHING + sum(open_ones) - 1)
+    score = 0.0
     for likely in rows:
         told = [value if is_open else 0.0 for value, is_open in zip(likely, open_ones, strict=True)]
         total = sum(told)

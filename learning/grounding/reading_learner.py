@@ -21,12 +21,13 @@ from learning.grammar.arrangement import Arrangement
 from learning.grammar.board_elements import BoardElements
 from learning.grammar.clauses import CommandReading, read_clauses
 from learning.grammar.description import Description, Sense
+from learning.grammar.in_vain import words_in_vain
 from learning.grammar.pcfg import Pcfg
 from learning.grammar.phrase import Feature
-from learning.grammar.phrase_chart import IN_VAIN, PhraseChart
+from learning.grammar.phrase_chart import PhraseChart
 from learning.grammar.reading_tree import tree_of
 from learning.grammar.weights import Weights
-from learning.grounding.alignment import Alignment
+from learning.grounding.alignment import Alignment, Meaning
 from learning.grounding.attention import salient_meanings, ways_of_speaking
 from learning.grounding.grounding import Grounding
 from learning.grounding.memory import LARGEST, Episode, Memory
@@ -51,7 +52,6 @@ while words could mean nearly anything would mislead for ever."""
 SWEEPS = 4
 """How often the memory is aligned again before it is read afresh."""
 Grounded = tuple[tuple[str, Concept | None, float], ...]
-IDLE_SPACES = ("rank", "side")
 LEAST_SHARE = 0.02
 """Readings whose share of the credit is smaller are not counted."""
 
@@ -100,6 +100,10 @@ class ReadingLearner:
     def knows(self, word: str) -> bool:
         """Whether a word was ever heard."""
         return self.alignment.word_counts.get(word, 0.0) > 0
+
+    def meanings(self, word: str) -> dict[Meaning, float]:
+        """P(meaning | word): what was validated, with the alignment as prior."""
+        return self._uses.meanings(word)
 
     def uses_of(self, words: tuple[str, ...], actions: ActionTable) -> WordUses:
         """How the words of a sentence may be read, by themselves."""
@@ -309,15 +313,7 @@ def _meant(reading: CommandReading) -> Iterator[tuple[int, Concept]]:
 
 def _told(reading: CommandReading) -> Iterator[tuple[int, Concept]]:
     """What words meant, without ranks and sides that ruled nothing out: who says such a word may say nothing by it."""
-    idle = {
-        position
-        for phrase in reading.phrases()
-        for part in phrase.walk()
-        if IN_VAIN in part.features
-        for child in part.children
-        if child.concept is not None and child.concept.space in IDLE_SPACES
-        for position in child.used
-    }
+    idle = {position for phrase in reading.phrases() for part in phrase.walk() for position in words_in_vain(part)}
     return ((position, concept) for position, concept in _meant(reading) if position not in idle)
 
 

@@ -9,6 +9,7 @@ from learning.concept_id import Concept
 from learning.grammar.arrangement import Arrangement
 from learning.grammar.board_elements import BoardElements
 from learning.grammar.clauses import Clause, CommandReading
+from learning.grammar.in_vain import words_in_vain
 from learning.grammar.innate import (
     ABOVE,
     COLLECTIVE,
@@ -123,3 +124,19 @@ def test_furthest_beside_a_side_is_one_leaf(words: tuple[Concept, Concept]) -> N
     reading = CommandReading((Clause(action, entity, None),), False, False, 1, (), 0.0, ())
     leaves = tree_of(reading, (0, 1, 2, 3)).children[0].children
     assert [(leaf.concept, leaf.first, leaf.last) for leaf in leaves] == [(EXTREMES[2], 1, 2), (CUBE, 3, 3)]
+
+
+def test_the_nearest_of_what_a_modifier_leaves_alone_is_said_in_vain() -> None:
+    """Of two red cubes one stands on a green one: "the red cube *which* on the green cube" needs no "nearest"."""
+    green = Concept("colour", 1)
+    scene = BoardElements(Arrangement((9, 9, 40), (0, 1, 0), (1, 0, 0), (0, 0, 0), None))
+    chart = chart_of(scene, (RED, CUBE, NEAREST_ONE, ABOVE, green, CUBE))
+    nearest = [phrase for phrase in whole(chart, "entity") if cast(tuple[int, bool, bool], phrase.meaning)[1]]
+    best = max(nearest, key=lambda phrase: phrase.score)
+    assert [*words_in_vain(best)] == [2]
+
+
+def test_the_nearest_of_several_is_not_said_in_vain() -> None:
+    scene = BoardElements(Arrangement((9, 40), (0, 0), (0, 0), (0, 0), None))
+    (best,) = [p for p in whole(chart_of(scene, (RED, CUBE, NEAREST_ONE)), "entity") if p.score > -0.5]
+    assert not [*words_in_vain(best)]

@@ -78,3 +78,11 @@ def test_what_is_told_part_by_part_is_told_apart_from_what_is_told_as_one() -> N
     for word, concept in (("prendi", take), ("porta", carry), ("posa", put)):
         meanings = alignment.meanings(word)
         assert max(meanings, key=lambda meaning: meanings[meaning]) == concept
+
+
+def test_words_never_heard_are_rather_told_part_by_part_than_as_one() -> None:
+    carry, take, put = (Concept("action", number) for number in (1, 2, 3))
+    ways = Way(untold=frozenset((take, put))), Way(untold=frozenset((carry,)))
+    shares = Alignment().observe(tuple("abcdefgh"), (carry, take, put), None, ways)
+    for _, as_one, *as_parts in shares:
+        assert as_one < sum(as_parts)
