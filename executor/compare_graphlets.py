@@ -34,17 +34,16 @@ class GraphletPair:
 
 
 def compare_graphlets(
-    release_dir: str | Path, demos_dir: str | Path, count: int, rng: np.random.Generator
+    release: Release, demos_dir: str | Path, count: int, rng: np.random.Generator
 ) -> list[GraphletPair]:
     """Compare `count` scenes drawn at random among those with a whole demo, all where there are fewer.
 
     Both are observed through the board's noise; what is *at it* is learned from these very demos.
 
     Raises:
-        ReleaseError: The release is malformed.
         DemoError: A demo cannot be read.
     """
-    paths = [(scene, demo_path(demos_dir, scene.number)) for scene in Release.load(release_dir).one_block_scenes()]
+    paths = [(scene, demo_path(demos_dir, scene.number)) for scene in release.one_block_scenes()]
     made = [(scene, path) for scene, path in paths if path.exists() and is_whole(path)]
     seen = []
     spaces = ConceptSpaces()

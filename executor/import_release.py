@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from executor.errors import ExecutorError, InputError
-from learning.train_robots import Release, Scene, ShownMove, scene_spec
+from learning.train_robots import Release, Scene, ShownMove, extended, scene_spec
 from robots.errors import ShowtellError
 from twin.board import BLOCK, CELL, cell_centre
 from twin.quiet import load_physics
@@ -104,6 +104,7 @@ def import_release(
     only: Iterable[int] | None = None,
     seed: int = 0,
     progress: bool = True,
+    extend: bool = False,
 ) -> ImportReport:
     """Drive the one-block scenes of a release on the twin and record each as a demo with its commands as utterances.
 
@@ -117,16 +118,19 @@ def import_release(
         only: Scene numbers to drive; None drives all one-block scenes.
         seed: Decides the operator's imprecision in every scene, whatever the order and `jobs`.
         progress: Whether to show a progress bar on stderr.
+        extend: Whether to drive the extended release instead (thesis 6.2.1), changed as `seed` draws it.
 
     Raises:
         ReleaseError: A file of the release is missing or malformed.
-        InputError: `jobs` or a scene number is wrong.
+        InputError: `jobs` or a scene number is wrong, or the directory holds demos of another release.
         ExecutorError: The directory cannot be written, or a worker process died.
     """
     started = time.perf_counter()
     if not 1 <= jobs <= MOST_JOBS:
         raise InputError(f"jobs is {jobs}, allowed 1..{MOST_JOBS}")
     release = Release.load(release_dir)
+    if extend:
+        release = extended(release, np.random.default_rng(seed))
     scenes = _chosen(release, only)
     folder = Path(out_dir)
     try:
@@ -142,7 +146,7 @@ def import_release(
         commands.setdefault(command.scene, []).append(command)
     for scene, move in scenes:
         path = demo_path(folder, scene.number)
-        kept = _kept(scene.number, path)
+        kept = _kept(scene, path)
         if kept is not None:
             outcomes[scene.number] = kept
             continue
@@ -272,10 +276,7 @@ def _truth(job: _Job, outcome: SceneOutcome) -> dict[str, Any]:
         "start": list(move.start),
         "goal": list(move.goal),
         "commands": list(job.command_ids),
-        "objects": {
-            str(index): {"colour": block.colour, "shape": block.shape}
-            for index, block in enumerate(job.scene.before.blocks)
-        },
+        "objects": _looks(job.scene),
         "seed": job.seed,
         "right": outcome.right,
         "reason": outcome.reason,
@@ -283,17 +284,37 @@ def _truth(job: _Job, outcome: SceneOutcome) -> dict[str, Any]:
     }
 
 
-def _kept(number: int, path: Path) -> SceneOutcome | None:
-    """The outcome of a demo that is already there and whole, or None."""
+def _looks(scene: Scene) -> dict[str, dict[str, str]]:
+    """Colour and shape of each block, by its number."""
+    return {
+        str(index): {"colour": block.colour, "shape": block.shape} for index, block in enumerate(scene.before.blocks)
+    }
+
+
+def _kept(scene: Scene, path: Path) -> SceneOutcome | None:
+    """The outcome of a demo that is already there and whole, or None.
+
+    Raises:
+        InputError: It shows blocks that look otherwise: it is of the other release, the public or the extended one.
+    """
     from teleop import DemoError, is_whole, read_truth
 
     if not is_whole(path):
         return None
     try:
         truth = read_truth(path)
-        return SceneOutcome(number, bool(truth["right"]), str(truth["reason"]), float(truth["simulated"]), 0.0, True)
+        outcome = SceneOutcome(
+            scene.number, bool(truth["right"]), str(truth["reason"]), float(truth["simulated"]), 0.0, True
+        )
+        shown = truth["objects"]
     except (DemoError, KeyError, TypeError, ValueError):
         return None
+    if shown != _looks(scene):
+        raise InputError(
+            f"{path}: shows other blocks than scene {scene.number} has; the public release, the extended one and each "
+            "of its seeds need a folder of their own"
+        )
+    return outcome
 
 
 @contextmanager

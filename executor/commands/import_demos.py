@@ -30,6 +30,9 @@ def train_robots(
     compare: Annotated[
         int, typer.Option(min=0, help="How many demos to hold against the key frames of their layouts afterwards.")
     ] = 50,
+    extend: Annotated[
+        bool, typer.Option("--extended", help="Drive the extended release: spheres, cylinders and black too.")
+    ] = False,
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
@@ -41,10 +44,17 @@ def train_robots(
 
     from executor.compare_graphlets import compare_graphlets
     from executor.import_release import import_release
+    from learning.train_robots import Release, extended
 
     out = Output(as_json)
     report = import_release(
-        directory, output, jobs=jobs or len(os.sched_getaffinity(0)), only=only or None, seed=seed, progress=True
+        directory,
+        output,
+        jobs=jobs or len(os.sched_getaffinity(0)),
+        only=only or None,
+        seed=seed,
+        progress=True,
+        extend=extend,
     )
     total = len(report.outcomes)
     failures = [(each.scene, each.reason) for each in report.failures]
@@ -55,7 +65,10 @@ def train_robots(
     kept = f", {report.kept} kept from an earlier run" if report.kept else ""
     speed = f"; one demo runs at {report.real_time_factor:.1f} x real time" if report.kept < total else ""
     out.say(f"{report.wall:.0f} s with {report.jobs} processes{kept}{speed}")
-    pairs = compare_graphlets(directory, output, compare, np.random.default_rng(seed)) if compare else []
+    release = Release.load(directory)
+    if extend:
+        release = extended(release, np.random.default_rng(seed))
+    pairs = compare_graphlets(release, output, compare, np.random.default_rng(seed)) if compare else []
     same = sum(pair.same for pair in pairs)
     if pairs:
         out.say(f"{same} of {len(pairs)} demos show the same action graphlet as the key frames of their layouts")
@@ -74,6 +87,7 @@ def train_robots(
             "real_time_factor": report.real_time_factor,
             "jobs": report.jobs,
             "demos": output,
+            "extended": extend,
             "seed": seed,
         }
     )

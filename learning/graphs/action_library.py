@@ -9,6 +9,8 @@ from learning.graphs.action_statistics import ActionStatistics, Measures
 from learning.graphs.known_action import KnownAction
 from learning.saved_numbers import saved_count
 
+LIKENESS = 0.5
+"""Share of their states that a badly seen action and what it really is have at least in common."""
 PATIENCE = 60
 """An action that fewer than one in so many demos shows is another one that was seen badly, if it is like one."""
 
@@ -90,6 +92,15 @@ class ActionLibrary:
         ]
         return -max(near)[1] if near else None
 
+    def find_like(self, graphlet: ActionGraphlet, measured: Sequence[Measures] | None = None) -> int | None:
+        """As `find`; what is none of the known actions is taken for the one it has most in common with.
+
+        With less than `LIKENESS` in common it is none. This is what becomes of a rare graphlet as demos come, so a demo
+        that is only looked at is not learned from but understood the same way.
+        """
+        number = self.find(graphlet, measured)
+        return self._likest(graphlet) if number is None else number
+
     def match_or_add(self, graphlet: ActionGraphlet, measured: Sequence[Measures] | None = None) -> int:
         """Number of the graphlet, which is added if no known one matches it (incremental learning, 3.4.2).
 
@@ -159,16 +170,20 @@ class ActionLibrary:
             passed = self._demos - self._first[number]
             if self._shown[number] * PATIENCE > passed:
                 continue
-            likes = [
-                (action.graphlet.likeness(other.graphlet), self._shown[one], -one)
-                for one, other in self._numbered_actions()
-                if self._shown[one] > self._shown[number]
-            ]
-            if likes and max(likes)[0] >= 0.5:
-                kept = -max(likes)[2]
+            kept = self._likest(action.graphlet, more_than=self._shown[number])
+            if kept is not None:
                 self._known(kept).adopt(action)
                 self._aliases[number] = kept
                 self._shown[kept] += self._shown[number]
+
+    def _likest(self, graphlet: ActionGraphlet, more_than: int = -1) -> int | None:
+        """The action that is most like a graphlet, of those shown in more demos; None where none is like it."""
+        likes = [
+            (graphlet.likeness(other.graphlet), self._shown.get(number, 0), -number)
+            for number, other in self._numbered_actions()
+            if self._shown.get(number, 0) > more_than
+        ]
+        return -max(likes)[2] if likes and max(likes)[0] >= LIKENESS else None
 
     def _numbered_actions(self) -> list[tuple[int, KnownAction]]:
         """Actions that are no alias, with their numbers."""

@@ -104,7 +104,7 @@ def shown_scene(knowledge: Knowledge, observation: Observation) -> TableScene:
     """
     spaces, language = knowledge.spaces, knowledge.table_language
     graphlet, measures, moved = shown_action(observation, spaces)
-    number = spaces.actions.find(graphlet, measures)
+    number = spaces.actions.find_like(graphlet, measures)
     if number is None:
         raise PerceptionError("the demo shows an action that was never learned")
     record = table_record(observation, spaces, number, graphlet, moved)

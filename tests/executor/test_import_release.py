@@ -8,7 +8,7 @@ from executor.compare_graphlets import compare_graphlets
 from executor.errors import InputError
 from executor.import_release import import_release
 from learning.errors import ReleaseError
-from learning.train_robots import Release
+from learning.train_robots import Release, extended
 from teleop import IncompleteDemoWarning, check_replay, load_demo, load_demos, read_truth
 from twin.board import BLOCK, CELL, cell_centre
 
@@ -59,7 +59,7 @@ def test_imported_demos_replay_exactly(imported: Path) -> None:
 
 
 def test_driven_demos_show_the_actions_that_layouts_imply(imported: Path, synthetic_release_directory: Path) -> None:
-    pairs = compare_graphlets(synthetic_release_directory, imported, 50, np.random.default_rng(0))
+    pairs = compare_graphlets(Release.load(synthetic_release_directory), imported, 50, np.random.default_rng(0))
     assert len(pairs) == len(list(imported.glob("*.mcap")))
     assert all(pair.same for pair in pairs), [(p.scene, str(p.driven), str(p.implied)) for p in pairs if not p.same]
 
@@ -130,3 +130,26 @@ def test_a_scene_that_moves_two_blocks_is_refused(real_release_directory: Path, 
 def test_real_scenes_of_every_kind(real_release_directory: Path, tmp_path: Path) -> None:
     report = import_release(real_release_directory, tmp_path, jobs=1, only=[377, 558, 630], progress=False)
     assert [outcome.reason for outcome in report.outcomes] == ["", "", ""]
+
+
+def test_the_extended_release_is_driven_with_its_own_shapes_and_words(
+    synthetic_release_directory: Path, tmp_path: Path
+) -> None:
+    extended_release = extended(Release.load(synthetic_release_directory), np.random.default_rng(5))
+    chosen = [
+        number
+        for number, changes in sorted(extended_release.changes.items())
+        if len(changes) == 3 and extended_release.scenes[number].move is not None
+    ][:2]
+    report = import_release(
+        synthetic_release_directory, tmp_path, jobs=1, only=chosen, seed=5, progress=False, extend=True
+    )
+    assert [outcome.right for outcome in report.outcomes] == [True, True]
+    for number, demo in zip(chosen, load_demos(tmp_path), strict=True):
+        said = tuple(command.sentence for command in extended_release.commands_of(number))
+        assert demo.utterances == said
+        shown = {thing.shape for thing in demo.scene.objects}
+        assert shown == {block.shape for block in extended_release.scenes[number].before.blocks}
+    assert len(compare_graphlets(extended_release, tmp_path, 50, np.random.default_rng(0))) == 2
+    with pytest.raises(InputError, match="a folder of their own"):
+        import_release(synthetic_release_directory, tmp_path, jobs=1, only=chosen, progress=False)

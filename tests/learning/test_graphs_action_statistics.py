@@ -131,6 +131,18 @@ def test_what_stays_rare_becomes_a_variant_of_what_it_is_like() -> None:
     assert again.to_json() == library.to_json() and again.resolve(2) == 1
 
 
+def test_what_is_only_looked_at_is_taken_for_the_action_it_is_most_like() -> None:
+    library = ActionLibrary()
+    seen_badly = ActionGraphlet((*LOWER.states, GraphletState(True, False, 1)))
+    for _ in range(2):
+        library.match_or_add(LOWER, measures(1, 1))
+    before = library.to_json()
+    assert library.find(seen_badly, measures(1, 1, 2)) is None
+    assert library.find_like(seen_badly, measures(1, 1, 2)) == 1
+    assert library.find_like(PUSH, measures(1, 1, 1, 1)) is None  # it has nothing in common with lowering
+    assert library.to_json() == before
+
+
 def test_what_is_shown_again_and_again_stays_an_action_of_its_own() -> None:
     library = ActionLibrary()
     longer = ActionGraphlet((*LOWER.states, GraphletState(True, False, 1)))
