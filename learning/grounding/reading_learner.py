@@ -25,10 +25,12 @@ from learning.grammar.in_vain import words_in_vain
 from learning.grammar.pcfg import Pcfg
 from learning.grammar.phrase import Feature
 from learning.grammar.phrase_chart import PhraseChart
+from learning.grammar.rcl import RclNode
 from learning.grammar.reading_tree import tree_of
 from learning.grammar.weights import Weights
 from learning.grounding.alignment import Alignment, Meaning
 from learning.grounding.attention import salient_meanings, ways_of_speaking
+from learning.grounding.collocations import Collocations
 from learning.grounding.grounding import Grounding
 from learning.grounding.memory import LARGEST, Episode, Memory
 from learning.grounding.shares import shares_of
@@ -84,6 +86,7 @@ class ReadingLearner:
         self.grounding = Grounding()
         self.grammar = Pcfg()
         self.weights = Weights()
+        self.collocations = Collocations()
         self.memory = Memory()
         self.sentences = 0
         self._uses = UseTable(self.alignment, self.grounding, self.weights)
@@ -135,6 +138,16 @@ class ReadingLearner:
         chart = PhraseChart(len(found.kept), found.uses, found.passed, weight, scene, senses)
         return Readings(tuple(read_clauses(chart, actions, weight)), found.kept)
 
+    def tree(self, words: tuple[str, ...], reading: CommandReading, kept: tuple[int, ...]) -> RclNode:
+        """The RCL tree of a reading, in which a meaning has all words that it is said with ("pick up").
+
+        Args:
+            words: The sentence.
+            reading: One of its readings.
+            kept: Positions in the sentence of the words that the reading's positions count.
+        """
+        return self.collocations.joined(tree_of(reading, kept), words)
+
     def learn(
         self,
         words: tuple[str, ...],
@@ -159,6 +172,7 @@ class ReadingLearner:
         """
         if not words or len(words) > LONGEST:
             return False
+        self.collocations.hear(words)
         scene = BoardElements(arrangement, bearing)
         ways = ways_of_speaking(shown, actions)
         salient = salient_meanings(scene, shown, ways)
@@ -267,6 +281,7 @@ class ReadingLearner:
             "grounding": self.grounding.to_json(),
             "grammar": self.grammar.to_json(),
             "weights": self.weights.to_json(),
+            "collocations": self.collocations.to_json(),
         }
 
     @classmethod
@@ -279,6 +294,7 @@ class ReadingLearner:
         learner.grounding = Grounding.from_json(data["grounding"])
         learner.grammar = Pcfg.from_json(data["grammar"])
         learner.weights = Weights.from_json(data["weights"])
+        learner.collocations = Collocations.from_json(data.get("collocations", {}))  # older files have none
         learner._uses = UseTable(learner.alignment, learner.grounding, learner.weights)
         return learner
 

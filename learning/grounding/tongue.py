@@ -332,8 +332,8 @@ class Tongue:
                 if not any(concept in looks for looks in scene.looks for concept in lent):
                     concepts |= scene.looks[scene.moved]
             concepts = {concept for concept in concepts if self._borne_out(ngram, concept)}
-            if " " not in ngram:
-                concepts |= UNMEASURED
+            if " " not in ngram and scene is not None:
+                concepts |= UNMEASURED  # a guess, which what was shown bears out or not
             if possible is not None:
                 weights = {
                     concept: self._word_weight(ngram, concept, lent.get(concept, 0.0)) + self._told(concept)
@@ -369,6 +369,8 @@ class Tongue:
         matrix = self.correlation
         if concept in UNMEASURED:
             return max(self._hypotheses.get(ngram, {}).values(), default=0.0) < MEASURED
+        if concept == OVER and self._mostly_passed(ngram):
+            return True  # "in" is heard with corners and fronts, too: only readings tell where it says more than they
         heard, every = matrix.ngram_counts.get(ngram, 0.0), _any_like(concept)
         usual = self._usual(concept)
         if matrix.demos > FIRST_SENTENCES and usual > 1.0 / LEAST_LIFT:
@@ -383,6 +385,11 @@ class Tongue:
             return share >= LEAST_ACTION
         sure = wilson(row.get(concept, 0.0), row.get(every, 0.0), self._by_chance(every)) > usual
         return sure and share >= max(LEAST_TRUE, LEAST_LIFT * usual)
+
+    def _mostly_passed(self, ngram: str) -> bool:
+        """Whether an n-gram was passed over in most of its uses, so that K tells of its neighbours more than of it."""
+        row = self._readings(ngram)
+        return " " not in ngram and row.get(None, 0.0) > MAINLY * sum(row.values())
 
     def _told(self, concept: Concept) -> float:
         """Log of how much likelier what is shown becomes when it is said: the rarer a concept is, the more it tells.

@@ -7,7 +7,6 @@ from learning.concept_id import OBJECT_SPACES, Concept
 from learning.grammar.arrangement import Arrangement
 from learning.grammar.board_elements import BoardElements
 from learning.grammar.clauses import CommandReading
-from learning.grammar.reading_tree import tree_of
 from learning.grammar.scene import bits
 from learning.grounding.reading_learner import LONGEST, MOST_WORDS, ReadingLearner, Readings
 from learning.interpretation.interpretation import (
@@ -76,7 +75,7 @@ class ReadingInterpreter:
             move,
             (things, places),
             (unknown, tuple(word for word in passed if self._established(word))),
-            tree_of(reading, found.kept),
+            self.language.tree(words, reading, found.kept),
             share,
             tuple(word for word in passed if word not in unknown and self.language.grounding.total(word) < ESTABLISHED),
         )
