@@ -8,7 +8,7 @@ WORKERS ?= 2
 
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test slow lint bench install clean
+.PHONY: demo test slow lint docs bench install clean
 
 demo: install
 	$(BIN)/showtell demo
@@ -25,6 +25,11 @@ lint: install
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# A site in build/docs; a warning, such as a link to nowhere, is an error.
+docs: install
+	$(BIN)/python -m sphinx -b html -c docs -d build/doctrees --fail-on-warning --keep-going -q . build/docs
+	@echo "open build/docs/docs/index.html"
 
 bench: install
 	rm -rf build/bench

@@ -1,4 +1,4 @@
-"""The house itself: public names, packaging, the door to the command line, and what the papers say."""
+"""The house itself: public names, packaging and the door to the command line. `tests/docs` reads the papers."""
 
 import importlib
 import re
@@ -121,20 +121,3 @@ def test_constraints_pin_versions_and_name_no_host() -> None:
     table = project()["project"]
     wanted = [*table["dependencies"], *table["optional-dependencies"]["dev"]]  # type: ignore[index]
     assert {Requirement(text).name.lower() for text in wanted} <= pinned
-
-
-def test_snippets_of_the_readme_compile_and_their_names_exist() -> None:
-    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    snippets = re.findall(r"```python\n(.*?)```", readme, flags=re.DOTALL)
-    assert snippets
-    for snippet in snippets:
-        compile(snippet, "README.md", "exec")
-        for module, names in re.findall(r"^from (\w+) import (.+)$", snippet, flags=re.MULTILINE):
-            for name in names.split(","):
-                assert hasattr(importlib.import_module(module), name.strip())
-
-
-def test_pictures_of_the_readme_are_there() -> None:
-    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    for path in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", readme):
-        assert (REPOSITORY / path).exists(), f"README.md shows {path}, which is not there"

@@ -19,10 +19,5 @@ def test_every_topic_and_field_is_in_the_document() -> None:
         assert word in text
 
 
-def test_snippets_of_the_document_compile() -> None:
-    for snippet in DOCUMENT.read_text(encoding="utf-8").split("```python\n")[1:]:
-        compile(snippet.split("```")[0], "demo-format.md", "exec")
-
-
 def test_log_times_are_exact_at_whole_seconds() -> None:
     assert [log_time(step, 240) for step in (0, 1, 240, 21600)] == [0, 4166666, 10**9, 90 * 10**9]
