@@ -277,7 +277,8 @@ class _Reader:
         return tuple(found)
 
     def _places(self, goal: Modifier, thing: int) -> int:
-        key = (goal, thing if goal.nearest or not goal.ground else -1)
+        # Nothing is put on itself: what may be meant depends on the thing where it is among what is spoken of.
+        key = (goal, thing if goal.nearest or not goal.ground or goal.ground >> thing & 1 else -1)
         known = self._goals.get(key)
         if known is None:
             known = self._goals[key] = self._find_places(goal, thing) & self.scene.usable

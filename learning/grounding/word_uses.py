@@ -62,7 +62,7 @@ ACTING = 0.1
 """A word that means some action with this probability may mean any."""
 UNMEASURED_PROBABILITY = 0.02
 MEASURING = 0.3
-"""A word that is a unit of distance with this probability may have a number before it."""
+"""A word that is a unit of distance with this probability may have a number before it, and a side after it."""
 DISPLACING = (*SIDES, *COUNTS, UNIT)
 """What is said of how far something moves: always together, so that few demos do not tell one from the next."""
 SENTENCE_END = "."
@@ -141,11 +141,12 @@ class UseTable:
         measuring = [means.get(UNIT, 0.0) > MEASURING for means in of_words]
         for position, (word, means) in enumerate(zip(words, of_words, strict=True)):
             before_unit = measuring[position + 1] if position + 1 < len(words) else False
+            after_unit = measuring[position - 1] if position else False
             skip = self._passed(word, means)
             after = words[position + 1] if position + 1 < len(words) else SENTENCE_END
             found = [
                 use
-                for use in self._uses(word, after, means, actions, len(kept), open_minded, before_unit)
+                for use in self._uses(word, after, means, actions, len(kept), open_minded, before_unit, after_unit)
                 if use.score > skip - HOPELESS
             ]
             if found:
@@ -166,6 +167,7 @@ class UseTable:
         position: int,
         open_minded: bool,
         before_unit: bool,
+        after_unit: bool,
     ) -> list[Use]:
         count = self.alignment.word_counts.get(word, 0.0)
         likely = [(p, meaning) for meaning, p in means.items() if meaning is not None and p > self.least_probability]
@@ -187,6 +189,10 @@ class UseTable:
                 chosen.setdefault(Concept(ACTION_SPACE, number), UNMEASURED_PROBABILITY / 2)
         if before_unit:
             for meaning in COUNTS:
+                chosen.setdefault(meaning, UNMEASURED_PROBABILITY)
+        if after_unit:
+            # "Up" of "two squares up" is no word for a side anywhere else.
+            for meaning in SIDES:
                 chosen.setdefault(meaning, UNMEASURED_PROBABILITY)
         if count < RARE and sum(p for meaning, p in means.items() if meaning in DISPLACING) > ACTING:
             for meaning in DISPLACING:

@@ -37,6 +37,15 @@ def test_a_word_before_a_unit_may_be_a_number() -> None:
     assert set(COUNTS) <= {use.concept for use in uses if use.first == 0}
 
 
+def test_a_word_after_a_unit_may_be_a_side() -> None:
+    """ "Two steps up": elsewhere the word is part of a verb."""
+    table = table_of("passi", UNIT, 60)
+    table.alignment.observe(("su",), (RED,))
+    uses = table.of(("su", "passi", "su"), ()).uses
+    assert not set(SIDES) & {use.concept for use in uses if use.first == 0}
+    assert set(SIDES) <= {use.concept for use in uses if use.first == 2}
+
+
 def test_an_open_mind_takes_any_word_without_a_plain_meaning_for_an_action() -> None:
     table = table_of("metti", RED, 100)
     for number in (1, 2):
