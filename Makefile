@@ -8,7 +8,7 @@ WORKERS ?= 2
 
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test slow lint docs bench install clean
+.PHONY: demo test slow lint docs picture bench install clean
 
 demo: install
 	$(BIN)/showtell demo
@@ -30,6 +30,11 @@ lint: install
 docs: install
 	$(BIN)/python -m sphinx -b html -c docs -d build/doctrees --fail-on-warning --keep-going -q . build/docs
 	@echo "open build/docs/docs/index.html"
+
+# docs/showtell.gif and docs/page.png: the way on the page, in Chromium, with what `make demo` learned.
+picture: install
+	@test -f demo-out/knowledge.json || $(BIN)/showtell demo
+	$(BIN)/python -m tests.pictures demo-out/knowledge.json
 
 bench: install
 	rm -rf build/bench

@@ -13,6 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from executor.errors import InputError
+from robots.workers import end_with_parent
 from twin.quiet import load_physics
 
 VARIETY = 0.25
@@ -155,6 +156,7 @@ def in_processes(
 
 
 def _start_worker() -> None:
-    """Leave interrupts to the parent, and be quiet."""
+    """Leave interrupts to the parent, end with it, and be quiet."""
+    end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     load_physics()

@@ -44,7 +44,8 @@ class Executor:
         """Take a world and what was learned.
 
         Raises:
-            InputError: The world is none that sentences are carried out in yet; says which are.
+            InputError: The world is none that sentences are carried out in yet, or the knowledge was learned on another
+                kind of scene; says what to do.
         """
         self.world = world
         self.knowledge = knowledge
@@ -71,12 +72,7 @@ class Executor:
         Raises:
             InputError: The sentence holds no word.
         """
-        if not any(letter.isalnum() for letter in sentence):
-            raise InputError(f"the sentence {sentence!r} holds no word; say what to do")
-        doer = self._doer
-        doer.stopwatch.restart()
-        view = doer.look()
-        steps = steps_of(sentence, doer, view, self.last, choice)
+        doer, (steps, view) = self._doer, self._understood(sentence, choice)
         trouble = next((step for step in steps if not self._can_act(step.understood)), None)
         if trouble is not None:
             report = report_of(trouble.understood, sentence)
@@ -85,6 +81,34 @@ class Executor:
         else:
             report = self._carried_out(sentence, steps, view, choice)
         return replace(report, durations=dict(doer.stopwatch.seconds))
+
+    def preview(self, sentence: str, choice: int | None = None) -> ExecutionReport:
+        """Understand a sentence in the scene as it is seen, and plan all of its steps; nothing moves.
+
+        Each step is planned in the scene as it should be then.
+
+        Args:
+            sentence: What to do.
+            choice: Track number of what was meant, as for `execute`.
+
+        Raises:
+            InputError: The sentence holds no word.
+        """
+        doer, (steps, view) = self._doer, self._understood(sentence, choice)
+        trouble = next((step for step in steps if not self._can_act(step.understood)), None)
+        if trouble is not None:
+            return report_of(trouble.understood, sentence)
+        reports: list[ExecutionReport] = []
+        for step in steps:
+            said = sentence if len(steps) == 1 else " ".join(step.words)
+            reports.append(doer.plan(step.understood, view, said))
+            if not reports[-1].success:
+                break
+            view = doer.imagine(view, step.understood)
+        if len(reports) == 1:
+            return reports[0]
+        whole = _together(sentence, reports, len(steps))
+        return replace(whole, reason=f"these are the {len(steps)} steps") if whole.success else whole
 
     @property
     def doer(self) -> Doer[Any]:
@@ -103,6 +127,18 @@ class Executor:
         self.last = moment.last
         self._doer.resume()
         return moment.sentence
+
+    def _understood(self, sentence: str, choice: int | None) -> tuple[list[Step], object]:
+        """The steps of a sentence, and how the scene looks in which they were understood.
+
+        Raises:
+            InputError: The sentence holds no word.
+        """
+        if not any(letter.isalnum() for letter in sentence):
+            raise InputError(f"the sentence {sentence!r} holds no word; say what to do")
+        self._doer.stopwatch.restart()
+        view = self._doer.look()
+        return steps_of(sentence, self._doer, view, self.last, choice), view
 
     def _can_act(self, understood: Understood) -> bool:
         return understood.clear or (self.clear and bool(understood.blocked) and understood.answer is Answer.IMPOSSIBLE)

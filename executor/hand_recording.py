@@ -1,5 +1,6 @@
 """Recording at this machine, with a gamepad or the terminal's keys: what `showtell record --device` does."""
 
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +13,8 @@ from teleop.hand_loop import HandStatus, drive_by_hand
 from teleop.loop_deck import Deck
 from teleop.mapping_table import describe
 
+LOOKS, BETWEEN_LOOKS = 5, 0.01
+"""SDL tells of a gamepad a moment after it was started: so often it is looked for, so far apart [s]."""
 _COLOURS = {"ok": "green", "slowed": "yellow", "stopped": "red"}
 
 
@@ -68,6 +71,8 @@ def record_by_hand(settings: HandSettings, out: Output) -> list[Path]:
         rows = describe(deck.world.robot, settings.mapping)
         out.table("Controls", ("action", "gamepad", "keys"), [(row.action, row.pad, row.keys) for row in rows])
         out.note("Record with its button, end and keep with the same one; Ctrl-C ends.")
+        if missing := _missing(device):
+            out.note(f"{missing}; the robot waits for it")
         with Live(console=out.console(err=True), refresh_per_second=10, transient=True) as live:
             return drive_by_hand(deck, device, lambda status: live.update(_line(status)), seconds=settings.seconds)
 
@@ -78,6 +83,16 @@ def _device(settings: HandSettings) -> Device:
     pad = settings.pad
     choice = int(pad) if pad is not None and pad.isdigit() else pad
     return Gamepad(choice, load_pad_layouts(settings.mapping))
+
+
+def _missing(device: Device) -> str:
+    """Why the device cannot be driven with yet; empty when it is there."""
+    for _ in range(LOOKS):
+        reading = device.poll(time.monotonic())
+        if reading.connected:
+            return ""
+        time.sleep(BETWEEN_LOOKS)
+    return reading.fault or "no device is connected"
 
 
 def _line(status: HandStatus) -> Table:

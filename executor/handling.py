@@ -6,7 +6,7 @@ import numpy as np
 
 from executor.arm_motions import WAY_CLEARANCE, ArmMotions, moved
 from executor.follow import wait
-from executor.grasp_choice import GENTLE, Accepts, choose_grasp, way_back
+from executor.grasp_choice import GENTLE, Accepts, ChosenGrasp, choose_grasp, way_back
 from executor.handled import Handled
 from robots.arm_model import ArmModel
 from robots.kinematics import quaternion_xyzw, rotation_matrix
@@ -97,18 +97,32 @@ class Handling:
         gripped = self.grip(object_id)
         return self.raise_by(lift) if gripped.success else gripped
 
-    def reach(self, object_id: int, lift: float = 0.10, accepts: Accepts = lambda grip, posture: True) -> Handled:
+    def choose(
+        self, object_id: int, lift: float = 0.10, accepts: Accepts = lambda grip, posture: True
+    ) -> ChosenGrasp | str:
+        """Choose a grasp for `reach`, or say why there is none; nothing moves. Arguments as there."""
+        return choose_grasp(self.motions, object_id, lift, accepts)
+
+    def reach(
+        self,
+        object_id: int,
+        lift: float = 0.10,
+        accepts: Accepts = lambda grip, posture: True,
+        chosen: ChosenGrasp | str | None = None,
+    ) -> Handled:
         """Bring the open hand around an object.
 
         Args:
             object_id: Which one.
             lift: How far up it must be possible to lift it then [m].
             accepts: Whether a grasp suits what comes after it.
+            chosen: A grasp that was chosen in the world as it is; None: one is chosen now.
 
         Raises:
             TwinError: There is no such object.
         """
-        chosen = choose_grasp(self.motions, object_id, lift, accepts)
+        if chosen is None:
+            chosen = self.choose(object_id, lift, accepts)
         if isinstance(chosen, str):
             return Handled(False, chosen)
         self.motions.fingers.tell(chosen.grip.opening)

@@ -17,6 +17,7 @@ import numpy as np
 from executor.errors import ExecutorError, InputError
 from learning.train_robots import Release, Scene, ShownMove, extended, scene_spec
 from robots.errors import ShowtellError
+from robots.workers import end_with_parent
 from twin.board import BLOCK, CELL, cell_centre
 from twin.quiet import load_physics
 
@@ -214,7 +215,8 @@ def _driven(todo: list[_Job], jobs: int) -> Iterator[SceneOutcome]:
 
 
 def _start_worker() -> None:
-    """Leave interrupts to the parent, and be quiet."""
+    """Leave interrupts to the parent, end with it, and be quiet."""
+    end_with_parent()
     load_physics()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from executor.errors import RefusalError
-from executor.motion_plan import MotionPlan, MoveTool
+from executor.motion_plan import MotionPlan, MoveTool, Step
 from executor.segment import Segment, ToolLimits
 from robots.pose import FloatArray
 from twin.state import JointCommand
@@ -57,6 +57,7 @@ class Motion:
     Attributes:
         opening: Gap that the fingers are told to make [m].
         on_start: Called before the first step of every move.
+        on_step: Called with each step of a plan when it begins.
     """
 
     def __init__(self, world: "World", limits: ToolLimits = TOOL_LIMITS, precise: ToolLimits = PRECISE) -> None:
@@ -64,6 +65,7 @@ class Motion:
         self.limits = limits
         self.precise = precise
         self.on_start: Callable[[], None] = lambda: None
+        self.on_step: Callable[[Step], None] = lambda step: None
         self.resume()
 
     def resume(self) -> None:
@@ -89,6 +91,7 @@ class Motion:
         """Carry out a plan, with a stop after every step; returns how each tool move ended."""
         arrivals = []
         for step in plan.steps:
+            self.on_step(step)
             if isinstance(step, MoveTool):
                 near = step.purpose in ("descend", "lower", "retreat", "lift")
                 arrivals.append(self.move_to(step.position, self.precise if near else self.limits))

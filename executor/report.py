@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     class Plan(Protocol):
         """Any motion plan, of the board's arm or of another."""
 
+        @property
+        def steps(self) -> Sequence[object]:
+            """What is done, in order."""
+
         def lines(self) -> Sequence[str]:
             """One line a step, for people."""
 

@@ -91,6 +91,7 @@ def show_and_learn(collection: BoardCollection, count: int, jobs: int, on_demo: 
             lesson = learner.study(each.observation, each.utterances, each.concepts)
             sentences, validated = sentences + lesson.sentences, validated + lesson.validated
             recorded.append(each.recorded)
+    learner.settle()
     shutil.rmtree(folder, ignore_errors=True)
     fresh.rename(folder)
     return Lessons(learner.knowledge, tuple(recorded), sentences, validated, perf_counter() - begun)

@@ -23,7 +23,7 @@ def table_words(knowledge: "Knowledge") -> dict[str, dict[str, dict[str, float]]
     return {
         script: {
             str(concept): {ngram: round(share, 3) for ngram, share, _ in entries}
-            for concept, entries in sorted(_meanings(tongue).items())
+            for concept, entries in sorted(meanings_of(tongue).items())
         }
         for script, tongue in sorted(knowledge.table_language.tongues.items())
     }
@@ -37,7 +37,7 @@ def tell_table_words(out: "Output", knowledge: "Knowledge") -> None:
     scripts = sorted(language.tongues)
     if not scripts:
         return
-    words = {script: _meanings(tongue) for script, tongue in language.tongues.items()}
+    words = {script: meanings_of(tongue) for script, tongue in language.tongues.items()}
     concepts = sorted({concept for row in words.values() for concept in row})
     rows = [(str(concept), *(_spoken(words[script].get(concept, [])) for script in scripts)) for concept in concepts]
     out.table("Words at tables (Φ)", ("concept", *(script.lower() for script in scripts)), rows)
@@ -63,7 +63,7 @@ def tell_table_words(out: "Output", knowledge: "Knowledge") -> None:
 
 def main_words(tongue: "Tongue") -> "dict[Concept, str]":
     """The most frequent word of each concept in one language."""
-    return {concept: entries[0][0] for concept, entries in _meanings(tongue).items()}
+    return {concept: entries[0][0] for concept, entries in meanings_of(tongue).items()}
 
 
 def _sizes(language: "TableLanguage") -> list[tuple[str, str]]:
@@ -78,7 +78,7 @@ def _sizes(language: "TableLanguage") -> list[tuple[str, str]]:
     return [(name, f"{size / 1000:.1f}") for name, size in (*sizes.items(), ("all", sum(sizes.values())))]
 
 
-def _meanings(tongue: "Tongue") -> "dict[Concept, list[tuple[str, float, float]]]":
+def meanings_of(tongue: "Tongue") -> "dict[Concept, list[tuple[str, float, float]]]":
     """Concepts to n-grams with Φ and how often they were read so, the most frequent first."""
     found: dict[Concept, list[tuple[str, float, float]]] = {}
     for ngram, row in tongue.grounding.counts.items():

@@ -55,6 +55,11 @@ class DriveSession:
         world.step(JointCommand(result.joint_velocity, openings, (speed, turn)))
         return result
 
+    def take_over(self) -> None:
+        """Go on in the world as it is, after somebody else moved it: from measured speeds, braked smoothly."""
+        self.servo.reset(self.world.commanded_base_twist)
+        self.servo.watch(*self._around())
+
     def _around(self) -> tuple[list[Obstacle], Mapping[str, Sequence[Obstacle]]]:
         """What is around, in the world, and what each arm holds, in its tool's frame."""
         world = self.world

@@ -7,19 +7,24 @@ again only after the sticks were let go.
 
 import time
 from collections import deque
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Literal
 
 import orjson
 
 from robots.errors import ShowtellError
+from twin.world import World
 
 from .drive_command import MAX_AGE
+from .errors import TeleopError
 from .gamepad import RESTING, GamepadState
 from .input_age import InputAge
-from .loop_channel import Channel
+from .loop_channel import PIECE, Channel, ChannelClosedError
 from .loop_deck import Deck
 from .loop_driver import DriveReport, OperatorInput, controls_of
+from .loop_extension import LentStopError, LoopExtension, MakeExtension
 from .loop_pace import Pace
 from .loop_view import SceneStream
 from .mapping_file import read_mapping_file
@@ -35,11 +40,15 @@ _KEPT_LATENCIES = 4000
 
 
 class ControlLoop:
-    """Steps a deck in real time and talks to the server."""
+    """Steps a deck in real time and talks to the server. Satisfies `Desk`.
 
-    def __init__(self, deck: Deck, channel: Channel) -> None:
+    Attributes:
+        deck: What is driven, recorded and replayed.
+    """
+
+    def __init__(self, deck: Deck, channel: Channel, make_extension: MakeExtension | None = None) -> None:
         """Send the geometry; nothing moves yet."""
-        self._deck = deck
+        self.deck = deck
         self._channel = channel
         self._pace = Pace(deck.world.DT)
         self._age = InputAge(deck.world.DT)
@@ -54,6 +63,9 @@ class ControlLoop:
         self._shown: tuple[object, ...] = ()
         self._report = DriveReport("stopped", self._lost)
         self._mode, self._demos = deck.mode, deck.demos()
+        self._lent = ""
+        self._stop_lent = ""
+        self._extension: LoopExtension | None = None if make_extension is None else make_extension(self)
         self._show_world()
 
     def run(self) -> None:
@@ -74,7 +86,7 @@ class ControlLoop:
                 self._take(orjson.loads(message))
         wish = self._wish(time.monotonic())
         try:
-            self._report, told = self._deck.step(wish)
+            self._report, told = self.deck.step(wish)
         except ShowtellError as error:
             self._notice("error", str(error))
         else:
@@ -82,20 +94,96 @@ class ControlLoop:
                 self._latencies.append(time.time() - self._input["stamp"])
             if told:
                 self._deck_changed("info", told)
-            for event in self._deck.driver.mapping.take_events():
+            for event in self.deck.driver.mapping.take_events():
                 self._button(event.name)
         self._fresh = False
+        self._show()
+        if self._extension is not None:
+            try:
+                self._extension.step()
+            except ChannelClosedError:
+                raise
+            except (ShowtellError, OSError) as error:
+                self._notice("error", str(error))
+
+    def close(self) -> None:
+        """End what was added to the loop."""
+        if self._extension is not None:
+            self._extension.close()
+
+    # What an extension may ask for
+
+    @contextmanager
+    def lend(self, why: str) -> Iterator[World]:
+        """Give the world away; see `Desk`."""
+        deck = self.deck
+        if deck.mode != "idle":
+            raise TeleopError(f"not now: {'keep or discard the demo first' if deck.mode == 'review' else deck.mode}")
+        if deck.driver.mapping.state.stopped:
+            raise TeleopError("the robot is stopped: release the stop first")
+        world = deck.world
+        self._lent, self._stop_lent = why, ""
+        self._report = DriveReport("ok", why, moving=True)
+        self._show(at_once=True)
+        self._pace.restart()
+        world.on_step = self._lent_step
+        try:
+            yield world
+        finally:
+            world.on_step = None
+            self._lent = ""
+            deck.driver.take_over()
+            self._pace.restart()
+
+    def tell(self, kind: Literal["T", "K"], message: Mapping[str, object]) -> bool:
+        """Tell all pages something; see `Desk`."""
+        told = kind.encode() + orjson.dumps(message)
+        if kind == "T" and len(told) < PIECE:
+            return self._channel.send(told)
+        self._channel.send_surely(told)
+        return True
+
+    def notice(self, level: Literal["info", "warning", "error"], text: str) -> None:
+        """Add a line to what happened."""
+        self._notice(level, text)
+
+    def keep(self) -> Path:
+        """Keep the demo that waits; see `Desk`."""
+        path, told = self.deck.last, self.deck.keep()
+        assert path is not None  # a demo that is kept has a file
+        self._deck_changed("info", told)
+        return path
+
+    def _lent_step(self) -> None:
+        """What goes on before every step that somebody else makes of the world."""
+        for data in self._channel.receive():
+            message = orjson.loads(data)
+            if message["type"] in ("do", "talk"):
+                self._notice("warning", f"{self._lent}: stop it first")
+            elif message["type"] != "release":
+                self._take(message)
+            if message["type"] in ("stop", "lost"):
+                self._stop_lent = message.get("reason", "it was stopped")
+        self._fresh = False
+        if self._stop_lent:
+            raise LentStopError(self._stop_lent)
+        self._show()
+        self._pace.wait()
+
+    def _show(self, *, at_once: bool = False) -> None:
+        """Tell how things stand, as often as that makes sense."""
         self._steps += 1
         if self._steps % POSES_EVERY == 0:
             self._channel.send(self._stream.poses())
         shown = (
             self._report.state,
             self._report.reason,
-            self._deck.mode,
+            self.deck.mode,
             self._noticed,
-            self._deck.driver.mapping.state.stopped,
+            self.deck.driver.mapping.state.stopped,
+            self._lent,
         )
-        if self._steps % STATUS_EVERY == 0 or shown != self._shown:
+        if at_once or self._steps % STATUS_EVERY == 0 or shown != self._shown:
             self._shown = shown
             self._channel.send(b"J" + orjson.dumps(self._status()))
 
@@ -110,12 +198,17 @@ class ControlLoop:
                 self._notice("warning", f"{message['reason']}: the robot stops")
             self._lost, self._input, self._gamepad = message["reason"], None, RESTING
         elif kind in ("stop", "release"):
-            mapping = self._deck.driver.mapping
+            mapping = self.deck.driver.mapping
             mapping.stop() if kind == "stop" else mapping.release()
         elif kind == "set":
             self._set(message)
         elif kind == "do":
             self._do(message)
+        elif kind == "talk":
+            if self._extension is None:
+                self._notice("error", "nobody listens here: this page only drives, records and replays")
+            else:
+                self._extension.hear(message)
 
     def _wish(self, now: float) -> OperatorInput:
         """What the operator wants, or why that is not known."""
@@ -136,7 +229,7 @@ class ControlLoop:
 
     def _set(self, message: dict[str, Any]) -> None:
         """Choose an arm or a speed."""
-        driver = self._deck.driver
+        driver = self.deck.driver
         try:
             if message["arm"] is not None:
                 driver.choose(message["arm"])
@@ -147,7 +240,7 @@ class ControlLoop:
 
     def _do(self, message: dict[str, Any]) -> None:
         """A button of the deck."""
-        deck = self._deck
+        deck = self.deck
         actions: dict[str, Callable[[], str]] = {
             "record": deck.record,
             "stop": deck.stop,
@@ -174,20 +267,20 @@ class ControlLoop:
 
     def _button(self, event: str) -> None:
         """A button of the gamepad that is meant for the deck: what it does depends on what is on."""
-        self._try(lambda: self._deck.press(event))
+        self._try(lambda: self.deck.press(event))
 
     def _deck_changed(self, level: str, told: str) -> None:
-        if self._deck.mode != self._mode:  # only then the list may be another one, and to look takes time
-            self._mode, self._demos = self._deck.mode, self._deck.demos()
+        if self.deck.mode != self._mode:  # only then the list may be another one, and to look takes time
+            self._mode, self._demos = self.deck.mode, self.deck.demos()
         self._notice(level, told)
-        if self._deck.changes != self._stream.number:
+        if self.deck.changes != self._stream.number:
             self._report = DriveReport("stopped", "the scene starts")
             self._show_world()
             self._pace.restart()
 
     def _show_world(self) -> None:
         """Send the geometry of the world that is on now."""
-        self._stream = SceneStream(self._deck.world, self._deck.changes)
+        self._stream = SceneStream(self.deck.world, self.deck.changes)
         self._channel.send_surely(b"J" + orjson.dumps(self._status()))
         self._channel.send_surely(b"S" + orjson.dumps(self._setup()))
         self._channel.send_surely(self._stream.geometry())
@@ -199,19 +292,20 @@ class ControlLoop:
 
     def _setup(self) -> dict[str, Any]:
         """What stays the same as long as the world is on."""
-        driver, keyboard = self._deck.driver, read_mapping_file().keyboard
+        driver, keyboard = self.deck.driver, read_mapping_file().keyboard
         return {
             "type": "setup",
-            "robot": self._deck.world.robot.name,
+            "robot": self.deck.world.robot.name,
             "choices": driver.choices,
             "controls": controls_of(driver.mapping),
             "keys": keyboard.keys,
             "slow": keyboard.slow,
+            "talks": self._extension is not None,
         }
 
     def _status(self) -> dict[str, Any]:
         """The state of affairs, whole: one that is lost on the way is made good by the next."""
-        report, deck, driver, world = self._report, self._deck, self._deck.driver, self._deck.world
+        report, deck, driver, world = self._report, self.deck, self.deck.driver, self.deck.world
         state = world.state()
         typical, latest = self._pace.lateness()
         return {
@@ -234,6 +328,7 @@ class ControlLoop:
             "held": state.held,
             "deck": deck.progress(),
             "demos": self._demos,
+            "lent": self._lent,
             "notices": list(self._notices),
             "latency": _quantiles(self._latencies),
             "late_ms": [1000 * typical, 1000 * latest],

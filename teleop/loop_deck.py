@@ -83,6 +83,15 @@ class Deck:
         """The world that is shown now."""
         return self.driver.world if self._player is None else self._player.world
 
+    @property
+    def last(self) -> Path | None:
+        """The demo that is or was recorded last; None before the first."""
+        return self._recording.path
+
+    def settle(self) -> None:
+        """Wait until the demo that was kept last is whole on the disk."""
+        self._recording.settle()
+
     def step(self, wish: OperatorInput) -> tuple[DriveReport, str]:
         """One control step of what is on; the second is something to tell people, mostly empty."""
         if self._player is not None:

@@ -181,6 +181,11 @@ class RobotDriver:
         self._steps += 1
         return report_of(result, command.fault if not command.stop else "")
 
+    def take_over(self) -> None:
+        """Go on after somebody else moved the robot; the sticks must be let go once before they move anything."""
+        self._session.take_over()
+        self.mapping.distrust()
+
     def last_state(self, recorder: Recorder) -> None:
         """Record the state that the last step led to."""
         recorder.state(self._steps, self.world.state())

@@ -9,7 +9,7 @@ import select
 import socket
 import subprocess
 import sys
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import orjson
@@ -30,12 +30,16 @@ class LoopSettings:
         robot: Robot instead of the scene's own, or None.
         seed: Decides a random scene.
         folder: Where demos are.
+        extension: `module:name` of what makes a `LoopExtension` in the loop's process, or None.
+        options: What it is made with, as plain values.
     """
 
     scene: str
     robot: str | None
     seed: int
     folder: Path
+    extension: str | None = None
+    options: dict[str, str] = field(default_factory=dict)
 
 
 def start_loop(settings: LoopSettings) -> tuple[subprocess.Popen[bytes], Channel]:
@@ -85,6 +89,7 @@ def run_loop(channel: Channel) -> None:
     load_physics()
     from .loop import ControlLoop
     from .loop_deck import Deck
+    from .loop_extension import load_extension
 
     try:
         deck = Deck(settings["scene"], settings["robot"], settings["seed"], Path(settings["folder"]))
@@ -92,12 +97,21 @@ def run_loop(channel: Channel) -> None:
         channel.send(b"J" + orjson.dumps({"type": "failed", "message": str(error)}))
         return
     try:
-        loop = ControlLoop(deck, channel)
+        make = None if settings["extension"] is None else load_extension(settings["extension"], settings["options"])
+        loop = ControlLoop(deck, channel, make)
+    except ShowtellError as error:
+        deck.close()
+        if isinstance(error, ChannelClosedError):
+            raise
+        channel.send(b"J" + orjson.dumps({"type": "failed", "message": str(error)}))
+        return
+    try:
         gc.collect()
         gc.freeze()  # what is here stays: later collections need not look at it
         loop.run()
     finally:
         gc.unfreeze()
+        loop.close()
         deck.close()
 
 

@@ -64,15 +64,21 @@ class RobotServo:
         self._n, self._d = len(robot.joint_names), len(self._brakes.names)
         self._camera = camera_axes_in_base(robot)
         self._state: State | None = None
+        self._rolling = (0.0, 0.0)
         base = robot.pose_base_in_world
         self._turned = base, rotation_matrix(base.orientation_xyzw)
         self._fingers = FingerServo(robot)
         self._guard = ServoGuard(robot, obstacles, held)
         self._warm_up()
 
-    def reset(self) -> None:
-        """Forget what was commanded: the next step starts from measured speeds and openings."""
+    def reset(self, base_twist: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Forget what was commanded: the next step starts from measured speeds and openings.
+
+        Args:
+            base_twist: Speed [m/s] and turning speed [rad/s] with which a base on wheels rolls now.
+        """
         self._state = None
+        self._rolling = base_twist
         self._fingers.reset()
         for arm in self._arms.values():
             arm.rest()
@@ -104,7 +110,7 @@ class RobotServo:
             self._turned = base, rotation_matrix(base.orientation_xyzw)
         turn = self._turned[1]
         if self._state is None:
-            self._state = self._brakes.first([*view.dq.tolist(), *([0.0] * (self._d - self._n))])
+            self._state = self._brakes.first([*view.dq.tolist(), *self._rolling[: self._d - self._n]])
         stop, why = why_to_stop(command, self.robot)
         heard = command if stop is DriveReason.NONE else DriveCommand()
         self._guard.look(q, self._fingers.measured(view.openings), base)

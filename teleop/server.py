@@ -24,10 +24,11 @@ from websockets.typing import Subprotocol
 
 from .errors import TeleopError
 from .loop_channel import Channel, ChannelClosedError
+from .loop_extension import TEXT_KINDS
 from .loop_process import LoopSettings, check_started, start_loop
 from .server_client import Client, Lateness
 from .server_door import SUBPROTOCOL, Door, check_exposure, is_upgrade, make_door
-from .server_files import file_response, plain
+from .server_files import PageFiles, file_response, page_files, plain
 from .server_protocol import LONGEST_MESSAGE, Control, Input, Message, ProtocolError, Release, Stop, read_message
 
 _LOG = logging.getLogger(__name__)
@@ -60,6 +61,7 @@ class PageServer:
         port: int = 0,
         names: Collection[str] = (),
         context: ssl.SSLContext | None = None,
+        files: PageFiles | None = None,
     ) -> None:
         """Keep the settings; nothing is started.
 
@@ -69,6 +71,7 @@ class PageServer:
             port: Port to listen at; 0 takes a free one.
             names: Other names under which the server is reached.
             context: TLS, or None.
+            files: More files of the page, for what the settings' extension adds to it.
 
         Raises:
             TeleopError: Other machines could reach the address, and there is no TLS.
@@ -76,6 +79,7 @@ class PageServer:
         check_exposure(host, True, context)
         self._settings = settings
         self._host, self._port, self._names, self._context = host, port, names, context
+        self._files = {**page_files(), **(files or {})}
         self.url = ""
         self.door: Door | None = None
         self._clients: dict[ServerConnection, Client] = {}
@@ -184,7 +188,7 @@ class PageServer:
             _LOG.warning("refused a request of %s: %s", connection.remote_address, refused.reason)
             return plain(refused.status, refused.reason)
         if not is_upgrade(request):
-            return file_response(request.method, request.path, request.headers["Host"], self.door.scheme)
+            return file_response(request.method, request.path, request.headers["Host"], self.door.scheme, self._files)
         if request.path != "/socket":
             return plain(HTTPStatus.NOT_FOUND, "the WebSocket is at /socket")
         if len(self._clients) >= MOST_PAGES:
@@ -333,7 +337,7 @@ class PageServer:
 
     def _pass_on(self, message: bytes) -> None:
         kind = message[:1].decode()
-        told: str | bytes = message[1:].decode() if kind in "JS" else message
+        told: str | bytes = message[1:].decode() if kind in TEXT_KINDS else message
         self._latest[kind] = told
         for client in self._clients.values():
             client.show(kind, told)

@@ -1,5 +1,6 @@
 """The page's own files, with headers that let nothing else in."""
 
+from collections.abc import Mapping
 from functools import cache
 from http import HTTPStatus
 from importlib.resources import files
@@ -15,19 +16,28 @@ _KINDS = {
 }
 
 
+PageFiles = Mapping[str, tuple[str, bytes]]
+"""Path to content type and bytes."""
+
+
 @cache
-def page_files() -> dict[str, tuple[str, bytes]]:
-    """Content type and bytes of each file, by path."""
+def page_files() -> PageFiles:
+    """Files of the page that drives and records."""
+    found = folder_files("teleop", "page")
+    return {**found, "/": found["/index.html"]}
+
+
+def folder_files(package: str, folder: str) -> PageFiles:
+    """What a page may load of a folder in a package."""
     found = {}
-    for each in files("teleop").joinpath("page").iterdir():
+    for each in files(package).joinpath(folder).iterdir():
         suffix = each.name[each.name.rfind(".") :]
         if suffix in _KINDS:
             found[f"/{each.name}"] = (_KINDS[suffix], each.read_bytes())
-    found["/"] = found["/index.html"]
     return found
 
 
-def file_response(method: str, path: str, host: str, scheme: str) -> Response:
+def file_response(method: str, path: str, host: str, scheme: str, known_files: PageFiles | None = None) -> Response:
     """Answer a request for a file.
 
     Args:
@@ -35,10 +45,11 @@ def file_response(method: str, path: str, host: str, scheme: str) -> Response:
         path: Of the request; what follows a `?` is ignored.
         host: The request's Host header, checked.
         scheme: `http` or `https`.
+        known_files: All files that there are; those of the page that drives and records if left out.
     """
     if method not in ("GET", "HEAD"):
         return plain(HTTPStatus.METHOD_NOT_ALLOWED, "only GET is answered")
-    known = page_files().get(path.split("?", 1)[0])
+    known = (page_files() if known_files is None else known_files).get(path.split("?", 1)[0])
     if known is None:
         return plain(HTTPStatus.NOT_FOUND, "there is no such file")
     kind, body = known

@@ -91,7 +91,18 @@ class Do(_Message):
     demo: _Name = ""
 
 
-Message = Input | Set | Control | Stop | Release | Do
+class Talk(_Message):
+    """Something said to who understands it: a command to read or do, an answer to a question, a demo to learn."""
+
+    type: Literal["talk"]
+    action: Literal["read", "do", "undo", "wrong", "learn"]
+    text: Annotated[str, Field(max_length=LONGEST_SENTENCE)] = ""
+    choice: Annotated[int, Field(ge=0, le=10_000)] | None = None
+    """Number of the thing that is meant, where the text alone leaves that open."""
+    demo: _Name = ""
+
+
+Message = Input | Set | Control | Stop | Release | Do | Talk
 _ADAPTER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="type")])
 
 

@@ -106,6 +106,7 @@ class RobotBody:
             for roller in robot.drive.rollers:
                 physics.set_friction(self.body, links[roller], 0.0)
         self._wheel_speeds = [0.0, 0.0]
+        self.base_twist = (0.0, 0.0)
         self._brake: int | None = None
         self._standing = 0.0
         for name, position in robot.locked.items():
@@ -324,6 +325,7 @@ class RobotBody:
         assert drive is not None
         speed = min(max(base_twist[0], -drive.speed), drive.speed)
         turn = min(max(base_twist[1], -drive.yaw_rate), drive.yaw_rate)
+        self.base_twist = (speed, turn)
         speeds = [
             (speed - turn * drive.track / 2) / drive.wheel_radius,
             (speed + turn * drive.track / 2) / drive.wheel_radius,

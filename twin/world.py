@@ -168,6 +168,11 @@ class World:
         return self._robot.openings
 
     @property
+    def commanded_base_twist(self) -> tuple[float, float]:
+        """Speed [m/s] and turning speed [rad/s] that the base was told last; zeros for a robot without wheels."""
+        return self._robot.base_twist
+
+    @property
     def base_pose(self) -> Pose:
         """Pose of the robot's base in the world, now."""
         return self._robot.base()

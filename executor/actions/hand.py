@@ -1,9 +1,11 @@
 """One arm that acts on one object: each motion primitive carried out on the twin."""
 
+from collections.abc import Sequence
 from functools import singledispatchmethod
 
 import numpy as np
 
+from executor.actions.action_plan import ActionPlan
 from executor.actions.destination import TURNS, Destination
 from executor.actions.primitives import (
     Carry,
@@ -19,15 +21,19 @@ from executor.actions.primitives import (
     Stay,
     Touch,
 )
+from executor.actions.reaching import reaches
 from executor.actions.step_aside import step_aside
 from executor.actions.things import clear_below, pose_of
 from executor.actions.touching_hand import TouchingHand
 from executor.arm_motions import ArmMotions
 from executor.follow import wait
+from executor.grasp_choice import ChosenGrasp
 from executor.handled import Handled
 from executor.handling import CarryPlan, Handling
+from robots.kinematics import rotation_matrix
 from robots.pose import FloatArray
 from twin import World
+from twin.grasp_poses import GraspPose
 
 SETTLE = 0.3
 """Time [s] in which everything comes to rest before an action begins."""
@@ -35,6 +41,8 @@ FALL = 0.5
 """Time [s] in which what is let go of in the air falls."""
 LEAST_DROP = 0.02
 """An object is lowered onto its destination from where it is carried now, or from so far above [m] at least."""
+OTHER_GRASP = (0.012, 0.4)
+"""A grasp is another one with its tool so far away [m], or turned so far [rad]."""
 IN_AIR = 0.01
 """An object is in the air with so much free height below it [m]."""
 
@@ -48,32 +56,62 @@ class ActingHand:
         object_id: The object it acts on.
         goal: Where the object's centre shall come to rest, (3,) [m]; None: below where it is.
         rng: Where the planners' chance comes from.
+        slipped: Grasps that are not tried again, where the object is now.
 
     Attributes:
         name: Name of the arm.
         may_give_up: Whether nothing has been touched yet: another arm may try.
+        grasps: Grasps that were come to.
     """
 
     def __init__(
-        self, world: World, arm: str, object_id: int, goal: FloatArray | None, rng: np.random.Generator
+        self,
+        world: World,
+        arm: str,
+        object_id: int,
+        goal: FloatArray | None,
+        rng: np.random.Generator,
+        slipped: Sequence[GraspPose] = (),
     ) -> None:
         self.name = arm
         self.may_give_up = True
+        self.grasps: tuple[GraspPose, ...] = ()
         self._world = world
         self._handling = Handling(world, arm, rng)
         self._motions = self._handling.motions
         self._object = object_id
         self._goal = goal
         self._rng = rng
+        self._slipped = tuple(slipped)
         self._destination: Destination | None = None
         self._plan: CarryPlan | None = None
         self._outside = TouchingHand(self._motions, object_id)
         self._lift_after: float | None = None
+        self._foreseen: ChosenGrasp | None = None
         self._early = False
 
     def do(self, step: Primitive) -> Handled:
         """Carry out a primitive."""
         return self._do(step)
+
+    def foresee(self, plan: ActionPlan) -> Handled:
+        """Whether the hand can begin an action, in the world as it is; nothing moves, and what was found is kept."""
+        hand = self._world.state().arms[self._motions.number]
+        if hand.gripper_closed and hand.held == self._object:
+            return Handled(True)
+        first = next((step for step in (*plan.before, *plan.steps) if isinstance(step, Reach | Touch)), None)
+        if isinstance(first, Touch):
+            near = reaches(self._world, self.name, self._object)
+            return Handled(near, "" if near else "out of reach: no posture brings the hand to the object")
+        if first is None:
+            return Handled(True)
+        if self._goal is not None and not reaches(self._world, self.name, self._object, self._goal):
+            return Handled(False, "out of reach: no posture brings the object to where it shall go")
+        chosen = self._chosen(first.lift)
+        if isinstance(chosen, str):
+            return Handled(False, chosen)
+        self._foreseen = chosen
+        return Handled(True)
 
     def take_over(self) -> bool:
         """Go on with the object if it is in the hand already."""
@@ -82,6 +120,11 @@ class ActingHand:
             return False
         self.may_give_up = False
         return self._handling.take_over(self._object).success
+
+    @property
+    def in_air(self) -> bool:
+        """Whether there is free room below the object."""
+        return self._below() > IN_AIR
 
     def settle(self) -> None:
         """Let everything come to rest."""
@@ -124,8 +167,9 @@ class ActingHand:
 
     @_do.register
     def _carry(self, step: Carry) -> Handled:
-        if self._goal is None:
-            return Handled(True)
+        there = self._handling.checked(Handled(True), "waiting to be carried")
+        if self._goal is None or not there.success:
+            return there
         plan = self._find_carry(self._goal)
         if plan is None and self._others_step_aside():
             plan = self._find_carry(self._goal)
@@ -145,7 +189,7 @@ class ActingHand:
 
     @_do.register
     def _release(self, step: Release) -> Handled:
-        in_air = self._below() > IN_AIR
+        in_air = self.in_air
         self._handling.let_go()
         if in_air:
             wait(self._world, FALL, self._motions.fingers.openings)
@@ -176,10 +220,23 @@ class ActingHand:
 
     def _reach_from(self, lift: float) -> Handled:
         """Bring the open hand around the object, to a grasp that suits its destination."""
-        if self._goal is None:
-            return self._handling.reach(self._object, lift)
-        self._destination = Destination(self._motions, self._object, self._goal, lift)
-        return self._handling.reach(self._object, lift, self._destination)
+        chosen, self._foreseen = self._foreseen, None
+        grasp = chosen or self._chosen(lift)
+        if not isinstance(grasp, str):
+            self.grasps = (*self.grasps, grasp.grip)
+        return self._handling.reach(self._object, lift, chosen=grasp)
+
+    def _chosen(self, lift: float) -> ChosenGrasp | str:
+        """A grasp that suits the object's destination, or why there is none."""
+        if self._goal is not None:
+            self._destination = Destination(self._motions, self._object, self._goal, lift)
+        return self._handling.choose(self._object, lift, self._accepted)
+
+    def _accepted(self, grip: GraspPose, posture: FloatArray) -> bool:
+        """Whether a grasp is another than those that slipped, and suits the destination."""
+        return not any(_alike(grip, other) for other in self._slipped) and (
+            self._destination is None or self._destination(grip, posture)
+        )
 
     def _below(self) -> float:
         """Free height below the object [m]."""
@@ -203,3 +260,11 @@ class ActingHand:
             if name != self.name:
                 made |= step_aside(ArmMotions(self._world, name, self._rng))
         return made
+
+
+def _alike(one: GraspPose, other: GraspPose) -> bool:
+    """Whether two grasps are nearly the same."""
+    a, b = one.pose_tool_in_world, other.pose_tool_in_world
+    turn = rotation_matrix(a.orientation_xyzw).T @ rotation_matrix(b.orientation_xyzw)
+    angle = float(np.arccos(np.clip((np.trace(turn) - 1.0) / 2.0, -1.0, 1.0)))
+    return float(np.linalg.norm(a.position - b.position)) < OTHER_GRASP[0] and angle < OTHER_GRASP[1]

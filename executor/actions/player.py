@@ -1,6 +1,6 @@
 """Playing an action graphlet on a world: one primitive after the other, by whichever arm can."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count
 
@@ -8,14 +8,20 @@ import numpy as np
 
 from executor.actions.action_plan import ActionPlan, plan_action
 from executor.actions.hand import ActingHand
-from executor.actions.primitives import Primitive
+from executor.actions.primitives import Close, Lift, Lower, Primitive, Release, Retreat
 from executor.actions.quantities import Quantities
+from executor.actions.reaching import reaches
 from executor.actions.rolling import roll_nearer
 from executor.actions.things import pose_of
+from executor.arm_motions import ArmMotions
 from executor.handled import Handled
 from learning.graphs.action_graphlet import ActionGraphlet
-from robots.pose import FloatArray
+from robots.pose import FloatArray, Pose
 from twin import World
+from twin.grasp_poses import GraspPose
+
+AT_HOME = 0.05
+"""An arm so near to its home posture [rad] is there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +49,22 @@ class ActionPlayer:
     Args:
         world: The twin.
         rng: Where the planners' chance comes from.
+        on_primitive: Called with each primitive when it begins.
+
+    Attributes:
+        grasps: Grasps that were come to in the last action, the first first.
     """
 
-    def __init__(self, world: World, rng: np.random.Generator) -> None:
+    def __init__(
+        self,
+        world: World,
+        rng: np.random.Generator,
+        on_primitive: Callable[[Primitive], None] = lambda primitive: None,
+    ) -> None:
         self.world = world
         self._rng = rng
+        self._on_primitive = on_primitive
+        self.grasps: tuple[GraspPose, ...] = ()
 
     def play(
         self,
@@ -56,8 +73,13 @@ class ActionPlayer:
         goal: FloatArray | None = None,
         quantities: Quantities | None = None,
         on_start: Callable[[str], None] = lambda arm: None,
+        *,
+        stays: bool = False,
+        slipped: Sequence[GraspPose] = (),
     ) -> Played:
-        """Play an action. An arm that cannot even begin leaves it to the next one.
+        """Play an action. An arm that cannot even begin leaves it to the next one; if none can, a base rolls nearer.
+
+        Nothing moves where no arm could begin from anywhere.
 
         Args:
             graphlet: The action.
@@ -65,6 +87,8 @@ class ActionPlayer:
             goal: Where its centre shall come to rest, (3,) [m], for an action that sets it down; None: where it is.
             quantities: How much of each change belongs to the action; usual amounts if not given.
             on_start: Called with the arm's name when the world is in the action's first state.
+            stays: Whether the base stays where it is.
+            slipped: Grasps that are not tried again.
 
         Raises:
             RefusalError: The graphlet has a change that no motion makes.
@@ -72,35 +96,66 @@ class ActionPlayer:
         """
         plan = plan_action(graphlet, quantities or Quantities())
         self.world.model_of(object_id)
+        goal = goal if plan.sets_down else None
         failed: list[Played] = []
         place = pose_of(self.world.state(), object_id).position
+        middle = place if goal is None else 0.5 * (place + np.asarray(goal))
+
+        def suits(base: Pose) -> bool:
+            return any(reaches(self.world, arm, object_id, goal, base) for arm in self.world.robot.arms)
+
         for attempt in count():
-            for arm in self._arms(object_id):
-                hand = ActingHand(self.world, arm, object_id, goal if plan.sets_down else None, self._rng)
-                played = self._with(hand, plan, on_start)
-                if played.success or not hand.may_give_up:
-                    return played
-                failed.append(played)
-                hand.make_way()
-            if not roll_nearer(self.world, place, attempt, self._rng):
+            for again in (False, True):
+                for arm in self._arms(object_id):
+                    hand = ActingHand(self.world, arm, object_id, goal, self._rng, slipped)
+                    self.grasps = ()
+                    can = hand.foresee(plan)
+                    if not can.success:
+                        failed.append(Played(False, can.reason, arm=arm))
+                        continue
+                    played = self._with(hand, plan, on_start)
+                    self.grasps = hand.grasps
+                    if played.success or not hand.may_give_up:
+                        return played
+                    failed.append(played)
+                    hand.make_way()
+                if again or not self._way_made():
+                    break
+            if stays or not roll_nearer(self.world, middle, attempt, self._rng, suits):
                 break
         # An arm that reached the object and had no room tells more than one that is far away.
         return min(failed, key=lambda each: each.reason.startswith("out of reach"))
+
+    def _way_made(self) -> bool:
+        """Whether an empty hand that was not at home went there, so that another one has room."""
+        made = False
+        state = self.world.state()
+        for number, name in enumerate(self.world.robot.arms):
+            motions = ArmMotions(self.world, name, self._rng)
+            away = float(np.abs(motions.q - motions.arm.home).max())
+            if state.arms[number].held is None and away > AT_HOME and len(self.world.robot.arms) > 1:
+                made |= motions.go(motions.arm.home, motions.around()).success
+        return made
 
     def _with(self, hand: ActingHand, plan: ActionPlan, on_start: Callable[[str], None]) -> Played:
         """Play with one arm."""
 
         def done(steps: tuple[Primitive, ...]) -> Iterator[tuple[Primitive, Handled]]:
             for step in steps:
+                self._on_primitive(step)
                 yield step, hand.do(step)
 
-        if not (plan.starts_held and hand.take_over()):
-            for step, outcome in done(plan.before):
-                if not outcome.success:
-                    return Played(False, outcome.reason, _name(step), hand.name)
+        steps = plan.steps
+        if hand.take_over():
+            before, steps = ((), steps) if plan.starts_held else _from_the_hand(steps, in_air=hand.in_air)
+        else:
+            before = plan.before
+        for step, outcome in done(before):
+            if not outcome.success:
+                return Played(False, outcome.reason, _name(step), hand.name)
         hand.settle()
         on_start(hand.name)
-        for step, outcome in done(plan.steps):
+        for step, outcome in done(steps):
             if not outcome.success:
                 return Played(False, outcome.reason, _name(step), hand.name, started=True)
         return Played(True, arm=hand.name, started=True)
@@ -119,6 +174,17 @@ class ActionPlayer:
             for name in names
         }
         return sorted(names, key=lambda name: away[name])
+
+
+def _from_the_hand(
+    steps: tuple[Primitive, ...], *, in_air: bool
+) -> tuple[tuple[Primitive, ...], tuple[Primitive, ...]]:
+    """What comes first, and what is left, of an action with an empty hand if its object is in the hand already."""
+    closing = next((number for number, step in enumerate(steps) if isinstance(step, Close)), None)
+    if closing is None:
+        return (Lower(), Release(), Retreat()), steps
+    left = steps[closing + 1 :]
+    return (), left[1:] if in_air and left and isinstance(left[0], Lift) else left
 
 
 def _name(step: Primitive) -> str:

@@ -11,6 +11,10 @@ class Shape:
 
     closed: bool
 
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return "close the hand" if self.closed else "open the hand"
+
 
 @dataclass(frozen=True, slots=True)
 class Reach:
@@ -18,10 +22,18 @@ class Reach:
 
     lift: float
 
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return "bring the open hand around it"
+
 
 @dataclass(frozen=True, slots=True)
 class Close:
     """Close the fingers on the object."""
+
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return "close the fingers on it"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,25 +42,45 @@ class Lift:
 
     height: float
 
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return f"lift it by {100 * self.height:.0f} cm"
+
 
 @dataclass(frozen=True, slots=True)
 class Carry:
     """Carry the held object above its destination; stay where it is if there is none."""
+
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return "carry it above its place"
 
 
 @dataclass(frozen=True, slots=True)
 class Lower:
     """Lower the held object until the wrist feels that it is borne."""
 
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return "lower it until it stands"
+
 
 @dataclass(frozen=True, slots=True)
 class Release:
     """Open the fingers around the object."""
 
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return "let it go"
+
 
 @dataclass(frozen=True, slots=True)
 class Retreat:
     """Draw the hand back the way it came."""
+
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return "draw the hand back"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +97,10 @@ class Touch:
     force: float
     onwards: float = 0.0
 
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return f"touch it from {self.side.name.lower()} with the closed hand"
+
 
 @dataclass(frozen=True, slots=True)
 class Push:
@@ -72,12 +108,20 @@ class Push:
 
     way: float
 
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return f"push it on by {100 * self.way:.0f} cm"
+
 
 @dataclass(frozen=True, slots=True)
 class Stay:
     """Keep everything as it is for a time [s]."""
 
     seconds: float
+
+    def __str__(self) -> str:
+        """What the hand does, in plain words."""
+        return f"stay for {self.seconds:.1f} s"
 
 
 Primitive = Shape | Reach | Close | Lift | Carry | Lower | Release | Retreat | Touch | Push | Stay

@@ -12,6 +12,7 @@ from executor.bench.camera_contenders import Moment, Setup, contender
 from executor.bench.physics import primitives_scene
 from executor.bench.report import BenchReport
 from robots.meshes import resolve
+from robots.workers import end_with_parent
 from twin import TwinError, World
 from twin.camera import CameraModel, RgbdFrame, kinect_noise
 from twin.camera.camera_model import pose_matrix
@@ -107,7 +108,7 @@ def _in_its_own_process(
     Raises:
         TwinError: It ended its process, or cannot work here.
     """
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=end_with_parent) as pool:
         try:
             return pool.submit(_time, name, setup, camera, moments).result()
         except BrokenProcessPool as error:

@@ -21,7 +21,9 @@ def describe(
     demo: Annotated[Path | None, typer.Argument(help="Demo to say what it shows.")] = None,
     scene: Annotated[
         str | None,
-        typer.Option(help="Say where things are instead: `board`, `tabletop`, `ordering` or a scene's TOML file."),
+        typer.Option(
+            help="Say where things are instead: `board`, `board-all`, `tabletop`, `ordering` or a scene's TOML file."
+        ),
     ] = None,
     robot: Annotated[str | None, typer.Option(help="Robot to use instead of the scene's own.")] = None,
     obj: Annotated[
@@ -43,17 +45,19 @@ def describe(
     """
     from executor.errors import InputError
     from executor.files import existing
+    from executor.knowledge_fit import usual_scene
     from learning import Knowledge
 
-    if (demo is None) == (scene is None):
-        raise InputError("give either a demo or --scene with a scene")
     out = Output(as_json)
     learned = Knowledge.load(existing(knowledge, "knowledge file"))
-    speakers = speakers_of(learned, language)
+    if (demo is None) == (scene is None):
+        raise InputError(f"give either a demo or --scene with a scene, such as --scene {usual_scene(learned)}")
     if demo is not None:
-        rows = _event(speakers, seen_in_demo(existing(demo, "demo"), seed))
+        seen = seen_in_demo(learned, knowledge, existing(demo, "demo"), seed)
+        rows = _event(speakers_of(learned, language), seen)
     else:
-        rows = _things(speakers, seen_in_scene(learned, scene or "", robot, seed), obj)
+        seen = seen_in_scene(learned, knowledge, scene or "", robot, seed)
+        rows = _things(speakers_of(learned, language), seen, obj)
     for row in rows:
         what = "" if row["object"] is None else f"object {row['object']}: "
         out.say(f"{what}{row['text'] or row['reason']}")
@@ -76,22 +80,28 @@ def speakers_of(knowledge: "Knowledge", language: str | None) -> "list[Speaker]"
     return [Speaker(knowledge, script) for script in scripts] or [Speaker(knowledge)]
 
 
-def seen_in_demo(path: Path, seed: int) -> "Observation":
-    """What is seen in a demo; what a camera saw is kept for the next time."""
+def seen_in_demo(knowledge: "Knowledge", source: Path, path: Path, seed: int) -> "Observation":
+    """What is seen in a demo; what a camera saw is kept for the next time.
+
+    Raises:
+        InputError: The knowledge is of boards and the demo shows a table, or the other way round.
+    """
     import numpy as np
 
     from executor.commands.perceive import CACHE
     from executor.demo_files import open_demo
+    from executor.knowledge_fit import check_fit
     from learning.perception import perceive_any
     from learning.perception.stage import perceive_one
 
     demo = open_demo(path)
+    check_fit(knowledge, demo.scene.kind, source)
     if demo.scene.kind == "board":
         return perceive_any(demo, np.random.default_rng(seed)).observation
     return perceive_one(path, path.parent / CACHE, seed).observation().observation
 
 
-def seen_in_scene(knowledge: "Knowledge", scene: str, robot: str | None, seed: int) -> "Observation":
+def seen_in_scene(knowledge: "Knowledge", source: Path, scene: str, robot: str | None, seed: int) -> "Observation":
     """What is seen in a scene that stands still.
 
     Raises:
@@ -99,18 +109,14 @@ def seen_in_scene(knowledge: "Knowledge", scene: str, robot: str | None, seed: i
     """
     import numpy as np
 
-    from executor.errors import InputError
-    from learning.concepts.space_set import BOARD
+    from executor.knowledge_fit import check_fit
     from learning.perception import observe_camera_world, observe_world
     from twin import World
 
     rng = np.random.default_rng(seed)
     with World.from_scene(scene, robot=robot, seed=seed) as world:
-        board = world.spec.kind == "board"
-        if board != (knowledge.spaces.space_set.name == BOARD.name):
-            shown, made = ("a board", "tables") if board else ("a table", "boards")
-            raise InputError(f"scene '{scene}' is {shown}, but this knowledge was made on {made}: give another --scene")
-        look = observe_world if board else observe_camera_world
+        check_fit(knowledge, world.spec.kind, source)
+        look = observe_world if world.spec.kind == "board" else observe_camera_world
         return look(world.state(), world.spec, rng)
 
 

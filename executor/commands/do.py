@@ -25,8 +25,12 @@ def do(
     ] = None,
     then: Annotated[list[str] | None, typer.Option(help="What to do next; `undo` undoes. May be given again.")] = None,
     scene: Annotated[
-        str, typer.Option(help="`board` for a random board from the seed, or a scene's TOML file.")
-    ] = "board",
+        str | None,
+        typer.Option(
+            help="`board`, `board-all`, `tabletop`, `ordering` or a scene's TOML file; what the knowledge was learned "
+            "on if left out."
+        ),
+    ] = None,
     robot: Annotated[str | None, typer.Option(help="Robot to use instead of the scene's own.")] = None,
     plan_only: Annotated[bool, typer.Option("--plan-only", help="Stop after the plan; nothing moves.")] = False,
     on_ambiguous: Annotated[
@@ -49,8 +53,10 @@ def do(
     import numpy as np
 
     from executor.errors import InputError
+    from executor.execution.readiness import get_ready
     from executor.executor import Executor
     from executor.files import check_place, existing
+    from executor.knowledge_fit import check_fit, usual_scene
     from executor.picture import check_suffix, save_strip
     from learning import Knowledge
     from twin import World
@@ -63,9 +69,12 @@ def do(
     learned = Knowledge.load(existing(knowledge, "knowledge file"))
     if picture is not None:
         check_place(check_suffix(picture))
+    scene = scene or usual_scene(learned)
     with World.from_scene(scene, robot=robot, seed=seed) as world:
+        check_fit(learned, world.spec.kind, knowledge)
         views: list[Picture] = [world.render(*PICTURE_SIZE)] if picture else []
         executor = Executor(world, learned, np.random.default_rng(seed), on_ambiguous=on_ambiguous.value, clear=clear)
+        get_ready(executor)
         if command is None:
             reports = _dialogue(out, executor, knowledge)
         else:

@@ -51,10 +51,14 @@ def describe(
     Example: showtell evaluate describe --train-robots train-robots/ --folds 1
     """
     from executor.errors import InputError
+    from executor.knowledge_fit import check_fit
+    from learning import Knowledge
 
     out = Output(as_json)
     if (demos is None) == (train_robots is None):
         raise InputError("give either a folder of demos or --train-robots with the folder of a release")
+    if knowledge is not None:
+        check_fit(Knowledge.load(knowledge), "table" if train_robots is None else "board", knowledge)
     if train_robots is not None:
         report = _board(out, train_robots, knowledge, folds, count, objects, seed)
     else:

@@ -6,10 +6,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from executor.commands.evaluate_tables import TableExam
 from executor.commands.output import FAILED, Json, Output, Seed
 from executor.execution.answer import OnAmbiguous
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from executor.execution.evaluation.endurance import Endurance
     from executor.execution.evaluation.learned import Learned
     from executor.execution.evaluation.verdict import Verdict
 
@@ -47,6 +51,7 @@ def execution(
     on_ambiguous: Annotated[
         OnAmbiguous, typer.Option(help="Ask, or take the best, where several fit.")
     ] = OnAmbiguous.ASK,
+    clear: Annotated[bool, typer.Option("--clear", help="Put aside what is in the way.")] = False,
     variety: Annotated[float, typer.Option(min=0.0, max=1.0, help="How often a synonym is said.")] = 0.25,
     demos: Annotated[
         int | None,
@@ -64,36 +69,49 @@ def execution(
     Scenes and sentences are made from the seed, and none was in the demos. `false_success` counts commands that were
     reported done and were not. A line of `--sentences` is the seed of a board scene, a tab, the sentence, and, if it is
     to be scored, a tab and the right answer (`ambiguous`, `impossible`, `unknown-word`), or a tab, the object's id, a
-    tab and `held` or the cell `x,y,z`.
+    tab and `held` or the cell `x,y,z`. At a table the seed is that of a tabletop or ordering scene, and a thing ends
+    `held`, in a part of the table (`top left`), in a relation to another (`in 2`, `left 3`), or as an action leaves it
+    (`press`).
 
     Example: showtell evaluate execution --robot three_dof --commands 100 --seed 1
 
     Example: showtell evaluate execution --train-robots train-robots/ --commands 200
 
     Example: showtell evaluate execution --robot baxter --commands 100
+
+    Example: showtell evaluate execution --robot mico_segway --suite unknown-word
     """
     from executor.collection import in_processes
     from executor.errors import InputError
     from executor.execution.evaluation.board_cases import board_cases, written_cases
+    from executor.execution.evaluation.endurance import endure
     from executor.execution.evaluation.learned import DEMOS, from_collection, from_release, given
     from executor.execution.evaluation.release_cases import SplitRelease, release_cases
-    from executor.execution.evaluation.suite_cases import suite_cases
+    from executor.execution.evaluation.suite_cases import SUITES, suite_cases
     from executor.execution.evaluation.verdict import Job, run_case
     from executor.files import existing
 
     out = Output(as_json)
     if robot not in ROBOTS:
         raise InputError(f"commands are evaluated with {', '.join(ROBOTS)}, not with {robot!r}")
-    if robot != "three_dof" and any(each is not None for each in (sentences, train_robots, suite, minutes)):
-        raise InputError("--sentences, --train-robots, --suite and --minutes are for three_dof so far; leave them out")
+    if robot != "three_dof" and train_robots is not None:
+        raise InputError("--train-robots are commands for the board: use them with --robot three_dof")
     if sum(each is not None for each in (sentences, train_robots, suite, minutes)) > 1:
         raise InputError("give one of --sentences, --train-robots, --suite and --minutes")
     if robot != "three_dof":
-        _at_table(out, robot, commands or 100, knowledge, cache, demos, language, jobs, failures, seed)
+        exam = TableExam(robot, language, seed)
+        learned = exam.learned(out, knowledge, cache, demos, jobs)
+        if minutes is not None:
+            length = minutes
+            _endure(out, minutes, seed, lambda advance: exam.endured(learned, length, advance))
+            return
+        named = next((each for each in SUITES if suite is not None and each == suite.value), None)
+        told = exam.verdicts(out, learned, commands, sentences, named, on_ambiguous, clear, jobs)
+        _tell(out, told, failures, seed, learned)
         return
     split = None if train_robots is None else SplitRelease.load(train_robots)
     if knowledge is not None:
-        learned = given(existing(knowledge, "knowledge file"))
+        learned = given(existing(knowledge, "knowledge file"), "board")
     elif split is not None:
         out.note(f"learning from {len(split.learned)} scenes of the groups that are not asked (kept for the next time)")
         learned = from_release(split, cache, seed=0)
@@ -101,7 +119,7 @@ def execution(
         with out.progress("showing and learning, once", demos or DEMOS) as advance:
             learned = from_collection(cache, demos or DEMOS, 0, jobs, advance)
     if minutes is not None:
-        _endure(out, learned, minutes, seed, variety)
+        _endure(out, minutes, seed, lambda advance: endure(learned.path, minutes, seed, variety, advance))
         return
     if split is not None:
         cases = release_cases(split, commands or 200, seed)
@@ -111,59 +129,18 @@ def execution(
         cases = suite_cases(suite.value, commands or 50, seed, learned.heard)
     else:
         cases = board_cases(commands or 100, seed, variety, learned.heard)
-    work = [Job(case, learned.path, seed, on_ambiguous.value) for case in cases]
+    work = [Job(case, learned.path, seed, on_ambiguous.value, clear) for case in cases]
     with out.progress("commands", len(work)) as advance:
         done = sorted(in_processes(run_case, work, jobs, advance), key=lambda pair: pair[0])
     _tell(out, [verdict for _, verdict in done], failures, seed, learned)
 
 
-def _at_table(
-    out: Output,
-    robot: str,
-    commands: int,
-    knowledge: Path | None,
-    cache: Path | None,
-    demos: int | None,
-    language: str,
-    jobs: int,
-    failures: int,
-    seed: int,
-) -> None:
-    """Carry out commands at a table."""
-    from executor.errors import InputError
-    from executor.execution.evaluation.learned import given
-    from executor.files import existing
-    from executor.tables.exam import answers
-    from executor.tables.learned import LANGUAGES, from_table_collection, usual_demos
-
-    if language not in LANGUAGES:
-        raise InputError(f"--language {language!r}: people at tables speak {', '.join(LANGUAGES)}")
-    if knowledge is not None:
-        learned = given(existing(knowledge, "knowledge file"))
-    else:
-        with out.progress("showing and learning, once", usual_demos(robot, demos)) as advance:
-            learned = from_table_collection(robot, cache, demos, 0, jobs, advance)
-    with out.progress("commands", commands) as advance:
-        done = answers(
-            robot,
-            str(learned.path),
-            commands,
-            seed,
-            language=language,
-            known=learned.heard,
-            jobs=jobs,
-            on_answer=advance,
-        )
-    _tell(out, [each.verdict() for each in done], failures, seed, learned)
-
-
-def _endure(out: Output, learned: "Learned", minutes: float, seed: int, variety: float) -> None:
+def _endure(out: Output, minutes: float, seed: int, endured: "Callable[[Callable[[], None]], Endurance]") -> None:
     """Give commands without a pause, and tell how it went."""
-    from executor.execution.evaluation.endurance import endure
     from learning.evaluation.machine import machine
 
     with out.progress("simulated minutes", round(minutes)) as advance:
-        report = endure(learned.path, minutes, seed, variety, advance)
+        report = endured(advance)
     figures = report.figures()
     out.table("Commands without a pause", ("figure", "value"), [(name, _figure(v)) for name, v in figures.items()])
     for error in report.errors:

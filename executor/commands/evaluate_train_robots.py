@@ -63,6 +63,7 @@ def train_robots(
     import numpy as np
 
     from executor.errors import InputError
+    from executor.knowledge_fit import check_fit
     from executor.picture import check_suffix
     from executor.release_student import LearnRelease, ReleaseStudent
     from learning import Knowledge
@@ -84,7 +85,9 @@ def train_robots(
     if not release.commands:
         raise InputError(f"{directory}: commands.txt holds no command; there is nothing to ask")
     if knowledge is not None:
-        student = ReleaseStudent(Knowledge.load(knowledge), np.random.default_rng(seed))
+        known = Knowledge.load(knowledge)
+        check_fit(known, "board", knowledge)
+        student = ReleaseStudent(known, np.random.default_rng(seed))
         with out.progress("asking", len(release.commands)) as advance:
             report = examine(release, student, seed=seed, on_answer=advance)
         _tell(out, report, failures)

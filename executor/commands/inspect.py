@@ -18,7 +18,8 @@ def inspect(
     scene: Annotated[
         str | None,
         typer.Option(
-            help="Scene for the sentence: `board`, `tabletop`, `ordering` or a TOML file (`board` or `tabletop`)."
+            help="Scene for the sentence: `board`, `board-all`, `tabletop`, `ordering` or a scene's TOML file; what "
+            "the knowledge was learned on if left out."
         ),
     ] = None,
     robot: Annotated[str | None, typer.Option(help="Robot to use instead of the scene's own.")] = None,
@@ -34,8 +35,8 @@ def inspect(
 
     Example: showtell inspect knowledge.json --html knowledge.html
     """
+    from executor.knowledge_fit import usual_scene
     from learning import Knowledge
-    from learning.concepts.space_set import BOARD
 
     out = Output(as_json)
     learned = Knowledge.load(knowledge)
@@ -44,8 +45,7 @@ def inspect(
     if sentence is None:
         tell_knowledge(out, learned, rules, everything)
     else:
-        usual = "board" if learned.spaces.space_set.name == BOARD.name else "tabletop"
-        _understand(out, learned, sentence, scene or usual, robot, seed)
+        _understand(out, learned, knowledge, sentence, scene or usual_scene(learned), robot, seed)
 
 
 def tell_knowledge(out: Output, knowledge: "Knowledge", rules: int, everything: bool = False) -> None:
@@ -107,9 +107,8 @@ def tell_words(out: Output, knowledge: "Knowledge", everything: bool = False) ->
             continue
         patch = Text("      ")
         if concept.space == "colour":
-            colour = "rgb({},{},{})".format(
-                *colour_of(knowledge.spaces.mixtures["colour"].components[concept.number].mean)
-            )
+            mixture = knowledge.spaces.mixtures["colour"]
+            colour = "rgb({},{},{})".format(*colour_of(mixture.components[concept.number].mean, mixture.space))
             patch = Text("      ", style=f"on {colour}")
         rows.append((str(concept), patch, mean, demos or "", spoken(words)))
     columns = ("concept", "", "its mean", "demos", "words that mean it (Φ)")
@@ -135,7 +134,9 @@ def _write_page(out: Output, learned: "Knowledge", html: Path, source: str) -> N
     out.say(f"wrote {html}")
 
 
-def _understand(out: Output, knowledge: "Knowledge", sentence: str, scene: str, robot: str | None, seed: int) -> None:
+def _understand(
+    out: Output, knowledge: "Knowledge", source: Path, sentence: str, scene: str, robot: str | None, seed: int
+) -> None:
     """Print how a sentence is understood in a scene, and why so."""
     from dataclasses import asdict
 
@@ -150,7 +151,7 @@ def _understand(out: Output, knowledge: "Knowledge", sentence: str, scene: str, 
 
     if not sentence.split():
         raise InputError("the sentence is empty; leave it out to see what was learned")
-    seen = seen_in_scene(knowledge, scene, robot, seed)
+    seen = seen_in_scene(knowledge, source, scene, robot, seed)
     if knowledge.spaces.space_set.name != BOARD.name:
         told = explain_table(knowledge, sentence, seen)
     else:

@@ -16,6 +16,10 @@ def serve(
     demos: Annotated[Path, typer.Option("--output", "-o", help="Folder in which demos are written and found.")] = (
         Path("demos")
     ),
+    knowledge: Annotated[
+        Path | None,
+        typer.Option(help="Knowledge to start from and learn into; knowledge.json in the demos' folder if left out."),
+    ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 takes a free one.")] = 8765,
     host: Annotated[str, typer.Option(help="Address to listen at; another than this machine's own needs --expose.")] = (
         "127.0.0.1"
@@ -30,16 +34,20 @@ def serve(
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
-    """Serve the page: the live twin, driven by gamepad or keyboard, recorded, described and replayed.
+    """Serve the page: show the live twin a task, tell it what you did, and have it do what you tell it next.
 
-    Open the printed address: its token lets this browser in, and nobody else.
+    Drive with a gamepad or the keyboard, record, describe, have it learned, type a command and watch it. Open the
+    printed address: its token lets this browser in, and nobody else.
 
     Example: showtell serve --scene board -o demos/
+
+    Example: showtell serve --scene tabletop --knowledge knowledge.json
     """
     import asyncio
     import signal
 
     from executor.errors import InputError
+    from executor.talk.serving import talk_files, talking
     from teleop.loop_process import LoopSettings
     from teleop.server import PageServer
     from teleop.server_door import check_exposure, tls_context
@@ -58,12 +66,16 @@ def serve(
         out.table("Page: from input to joint command", ("figure", "value"), report.rows())
         out.result(report.values())
         return
-    server = PageServer(settings, host=host, port=port, names=name or (), context=context)
+    learned = knowledge or demos / "knowledge.json"
+    server = PageServer(
+        talking(settings, learned), host=host, port=port, names=name or (), context=context, files=talk_files()
+    )
 
     def started(url: str) -> None:
         out.say(f"The page is at {url}")
-        out.say(f"Demos are in {demos}. Ctrl-C ends.")
-        out.result({"url": url, "demos": demos})
+        new = "" if learned.exists() else ", which the first lesson makes"
+        out.say(f"Demos are in {demos}, what is learned in {learned}{new}. Ctrl-C ends.")
+        out.result({"url": url, "demos": demos, "knowledge": learned})
 
     async def run() -> None:
         task = asyncio.ensure_future(server.run(started))

@@ -6,7 +6,7 @@ from enum import StrEnum
 class Answer(StrEnum):
     """How a command was answered.
 
-    Only `DONE`, `FAILED` and `UNCERTAIN` come after a motion; with all others nothing has moved.
+    Only `DONE`, `FAILED`, `UNCERTAIN` and `STOPPED` come after a motion; with all others nothing has moved.
     """
 
     DONE = "done"
@@ -15,6 +15,8 @@ class Answer(StrEnum):
     """Something was done, and what is seen afterwards is not what the sentence says."""
     UNCERTAIN = "uncertain"
     """Something was done, and a look does not tell whether it came out right."""
+    STOPPED = "stopped"
+    """The person stopped it on the way."""
     PLANNED = "planned"
     """There is a plan, and no more was asked for."""
     REFUSED = "refused"
@@ -29,7 +31,7 @@ class Answer(StrEnum):
     @property
     def moved(self) -> bool:
         """Whether something was set in motion."""
-        return self in (Answer.DONE, Answer.FAILED, Answer.UNCERTAIN)
+        return self in (Answer.DONE, Answer.FAILED, Answer.UNCERTAIN, Answer.STOPPED)
 
     @property
     def good(self) -> bool:

@@ -1,5 +1,6 @@
 """Steps on the board: seen through noise, understood, and carried out by the arm of three joints."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -54,6 +55,8 @@ class BoardDoer:
         self.runner = GoalRunner(world, rng)
         self.stopwatch = self.runner.stopwatch
         self.understanding = BoardUnderstanding(knowledge, on_ambiguous)
+        self.on_progress: Callable[[object], None] = lambda step: None
+        self.runner.motion.on_step = lambda step: self.on_progress(step)
 
     def look(self) -> BoardView:
         """Look at the board."""
@@ -112,6 +115,11 @@ class BoardDoer:
             if not report.success:
                 return report
         return report
+
+    def where(self, view: BoardView, number: int) -> tuple[FloatArray, float] | None:
+        """Centre and half of the width of a block; see `Doer`."""
+        sight = Sight.of(view.observation)
+        return (sight.where(number), board.BLOCK / 2) if number in sight.object_ids else None
 
     def acts(self, word: str) -> bool:
         """Whether a word may name an action."""

@@ -1,5 +1,6 @@
 """What a robot in its world has to offer so that commands can be carried out: the part that differs between robots."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
@@ -8,7 +9,9 @@ from executor.errors import InputError
 from executor.execution.answer import OnAmbiguous
 from executor.execution.stopwatch import Stopwatch
 from executor.execution.understood import Understood
+from executor.knowledge_fit import check_fit
 from executor.report import ExecutionReport
+from robots.pose import FloatArray
 
 if TYPE_CHECKING:
     from learning import Knowledge
@@ -25,9 +28,11 @@ class Doer(Protocol[View]):
 
     Attributes:
         stopwatch: Times of the command that is being carried out; restarted at each.
+        on_progress: Called with each step of a plan, as `Plan.steps` has it, when it begins to be carried out.
     """
 
     stopwatch: Stopwatch
+    on_progress: Callable[[object], None]
 
     def look(self) -> View:
         """Look at the scene as it stands; gives a view."""
@@ -54,6 +59,9 @@ class Doer(Protocol[View]):
         However it ends, the hand is left sound: it holds only what it should.
         """
 
+    def where(self, view: View, number: int) -> tuple[FloatArray, float] | None:
+        """Centre (3,) and half of the width [m] of a thing by its track number; None where it is not seen."""
+
     def acts(self, word: str) -> bool:
         """Whether a word may name an action, so that a step can begin with it."""
 
@@ -76,8 +84,10 @@ def doer_for(
     """Give the doer for a robot in its world.
 
     Raises:
-        InputError: The world is none that sentences are carried out in yet; says which are.
+        InputError: The world is none that sentences are carried out in yet, or the knowledge was learned on another
+            kind of scene; says what to do.
     """
+    check_fit(knowledge, world.spec.kind)
     if world.spec.kind == "board" and len(world.robot.joint_names) == 3:
         from executor.execution.board_doer import BoardDoer
 

@@ -49,7 +49,7 @@ class Session:
             undone = self.executor.undo()
             return "there is nothing to undo" if undone is None else f"undone: {undone}"
         if word == WRONG:
-            return self._wrong()
+            return self.mark_wrong()
         if word.isdecimal() and self.last is not None and self.last.answer is Answer.AMBIGUOUS:
             return self._chosen(int(word), self.last)
         return self._told(self.executor.execute(line))
@@ -67,8 +67,8 @@ class Session:
             lines += [f"  {number}. {option.name}" for number, option in enumerate(report.options, start=1)]
         return "\n".join(lines)
 
-    def _wrong(self) -> str:
-        """Mark what was done last as wrong: in the knowledge in use, and in its file."""
+    def mark_wrong(self) -> str:
+        """Mark what was done last as wrong, in the knowledge in use and its file, and undo it; tells how that went."""
         if self.last is None or not self.last.answer.moved:
             return "nothing was done that could be wrong"
         sentence = self.last.sentence

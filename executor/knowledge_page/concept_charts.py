@@ -23,7 +23,7 @@ Components = Mapping[int, Gaussian]
 def swatch(colour: tuple[int, int, int]) -> str:
     """A patch of a colour, red, green and blue in 0..255."""
     fill = "rgb({},{},{})".format(*colour)
-    return svg.drawing(96, 56, [svg.box(0.5, 0.5, 95, 55, "edge", fill)], "a patch of " + fill)
+    return svg.drawing(96, 56, [svg.box(0.5, 0.5, 95, 55, "frame", fill)], "a patch of " + fill)
 
 
 def histogram(bins: FloatArray) -> str:

@@ -12,6 +12,7 @@ from learning.concept_id import ACTION_SPACE, Concept
 
 if TYPE_CHECKING:
     from learning import Knowledge
+    from learning.concepts.feature_space import FeatureSpace
     from learning.concepts.gaussian import Gaussian
 
 Words = dict[Concept, list[tuple[str, float, float]]]
@@ -26,7 +27,7 @@ h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem}p,figcaption{color:va
 .cards{display:flex;flex-wrap:wrap;gap:.7rem}.card{background:var(--card);padding:.6rem .8rem;border-radius:.5rem}
 .card b{display:block}.words{max-width:15rem}.wide{overflow-x:auto}
 svg{display:block;max-width:none;font:12px system-ui,sans-serif}svg text{fill:var(--ink)}svg .faint{fill:var(--faint)}
-.thin{stroke:var(--edge);fill:none}.edge{stroke:var(--edge);fill:none}.bar{fill:var(--mark)}
+.frame{stroke:var(--edge)}.thin{stroke:var(--edge);fill:none}.edge{stroke:var(--edge);fill:none}.bar{fill:var(--mark)}
 .blob{fill:var(--blob);stroke:var(--mark)}.hollow{fill:none;stroke:var(--mark);stroke-dasharray:3 2}
 .curve{fill:none;stroke:var(--mark);stroke-width:1.5}.arrow{stroke:var(--ink);stroke-width:1.5}
 .node,.leaf{fill:var(--paper);stroke:var(--ink)}.leaf{stroke:var(--edge)}.changed{fill:var(--new)}
@@ -48,8 +49,8 @@ def knowledge_page(knowledge: "Knowledge", source: str) -> str:
         f"<p>{knowledge.demos} demos seen, {knowledge.sentences} sentences heard. Ids carry no meaning: the words "
         "beside a concept are those that were learned to mean it, with their probability.</p>",
     ]
-    for space, mixture in knowledge.spaces.mixtures.items():
-        parts += _space(space, dict(mixture.components), words)
+    for mixture in knowledge.spaces.mixtures.values():
+        parts += _space(mixture.space, dict(mixture.components), words)
     parts += _actions(knowledge, words)
     parts += _sizes(knowledge)
     return (
@@ -61,8 +62,22 @@ def knowledge_page(knowledge: "Knowledge", source: str) -> str:
     )
 
 
-def _space(space: str, components: "dict[int, Gaussian]", words: Words) -> list[str]:
-    """A feature space: a drawing of all its concepts where that shows them best, and a card for each."""
+def knowledge_sections(knowledge: "Knowledge") -> list[tuple[str, str, str]]:
+    """The concepts of each feature space and the actions, drawn: name, title and HTML of each; for a page of others."""
+    words = words_of_concepts(knowledge)
+    actions = _actions(knowledge, words)
+    found = [("actions", "Actions", "\n".join(actions[1:]) or "<p>No action was seen yet.</p>")]
+    for space, mixture in knowledge.spaces.mixtures.items():
+        found.append((space, space.capitalize(), "\n".join(_space(mixture.space, dict(mixture.components), words)[1:])))
+    return found
+
+
+def _space(kind: "type[FeatureSpace]", components: "dict[int, Gaussian]", words: Words) -> list[str]:
+    """A feature space: a drawing of all its concepts where that shows them best, and a card for each.
+
+    Those that words mean come first, the most often seen first; the others are folded away.
+    """
+    space = kind.name
     parts = [f"<h2>{escape(space)}: {len(components)} concepts</h2>"]
     if not components:
         return [*parts, "<p>Nothing was learned of it.</p>"]
@@ -74,15 +89,21 @@ def _space(space: str, components: "dict[int, Gaussian]", words: Words) -> list[
     elif dimension == 1:
         unit, factor = {"distance": ("mm", 1000.0), "weight": ("g", 1000.0)}.get(space, ("", 1.0))
         parts.append(_figure(density_curves(components, unit, factor), f"Each concept of {space}, to its own height."))
-    parts.append('<div class="cards">')
-    for number, component in components.items():
+    said: list[str] = []
+    unsaid: list[str] = []
+    for number, component in sorted(components.items(), key=lambda each: -each[1].demos):
         sketch = ""
         if space == "colour":
-            sketch = swatch(colour_of(component.mean))
+            sketch = swatch(colour_of(component.mean, kind))
         elif dimension > 3:
             sketch = histogram(np.abs(component.mean[:33]))
-        parts.append(_card(Concept(space, number), component.demos, sketch, words))
-    parts.append("</div>")
+        concept = Concept(space, number)
+        (said if concept in words else unsaid).append(_card(concept, component.demos, sketch, words))
+    if said:
+        parts += ['<div class="cards">', *said, "</div>"]
+    if unsaid:
+        summary = f"{len(unsaid)} {'more ' if said else ''}that no word means"
+        parts += [f'<details><summary>{summary}</summary><div class="cards">', *unsaid, "</div></details>"]
     return parts
 
 
@@ -94,7 +115,7 @@ def _actions(knowledge: "Knowledge", words: Words) -> list[str]:
         parts.append("<p>What changes from state to state is marked; L stands for a place, whichever it is.</p>")
     for number, graphlet in numbered.items():
         concept = Concept(ACTION_SPACE, number)
-        parts.append(f'<div class="card wide"><b>{escape(str(concept))}</b>{draw_graphlet(graphlet)}')
+        parts.append(f'<div class="card wide" tabindex="0"><b>{escape(str(concept))}</b>{draw_graphlet(graphlet)}')
         parts.append(f"<div>{_spoken(words.get(concept, []))}</div></div><br>")
     return parts
 

@@ -27,8 +27,8 @@ def circle(x: float, y: float, radius: float, kind: str = "thin") -> str:
 
 
 def box(x: float, y: float, width: float, height: float, kind: str, fill: str = "") -> str:
-    """A rectangle; a `fill` of its own goes before the style's."""
-    own = f' style="fill:{fill}"' if fill else ""
+    """A rectangle; a `fill` of its own counts where the page's style gives its kind none."""
+    own = f' fill="{fill}"' if fill else ""  # an attribute: pages that allow no inline styles show it too
     return f'<rect class="{kind}" x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}"{own}/>'
 
 

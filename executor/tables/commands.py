@@ -17,6 +17,7 @@ from executor.collections.performance import PlannedDemo, Shown
 from executor.collections.rules import Facts, Rule
 from executor.collections.table_goals import put_rule
 from executor.collections.table_plans import planned
+from executor.execution.answer import Answer
 from executor.execution.evaluation.verdict import Verdict
 from executor.follow import wait
 from executor.report import ExecutionReport
@@ -47,7 +48,8 @@ class TableCommand:
         action: True name of the action, for the report.
         target: Id of the thing it is about.
         thing: Name of its model.
-        judge: Says what is wrong afterwards.
+        judge: Says what is wrong afterwards; None where nobody knows what should come of it.
+        expected: Which answer, where nothing should move; None where something should.
     """
 
     scene: SceneSpec
@@ -55,7 +57,8 @@ class TableCommand:
     action: str
     target: int
     thing: str
-    judge: Judge
+    judge: Judge | None
+    expected: Answer | None = None
 
 
 def tabletop_command(rng: np.random.Generator, language: str, known: Heard) -> TableCommand:
@@ -81,7 +84,7 @@ def tabletop_command(rng: np.random.Generator, language: str, known: Heard) -> T
             sentence = _new([each for each in tell_table(facts, SPEAKERS, language, rng)], known)
             rule = put_rule(world, action, target, plan.goal)
         if sentence is not None:
-            return TableCommand(scene, sentence, action, target, thing, _by_rule(rule, plan.demo))
+            return TableCommand(scene, sentence, action, target, thing, by_rule(rule, plan.demo))
 
 
 def counter_command(rng: np.random.Generator, language: str, known: Heard) -> TableCommand:
@@ -110,7 +113,7 @@ def _new(told: list[Told], known: Heard) -> str | None:
     return next((each.text for each in told if not each.mistakes and words_of(each.text) not in known), None)
 
 
-def _by_rule(rule: Rule, plan: PlannedDemo) -> Judge:
+def by_rule(rule: Rule, plan: PlannedDemo) -> Judge:
     """A judge who looks at the world as it was and as it is when all has come to rest."""
 
     def judge(world: WitnessedWorld, before: WorldState) -> str:
@@ -118,7 +121,8 @@ def _by_rule(rule: Rule, plan: PlannedDemo) -> Judge:
         for _ in range(LOOKS):
             wait(world, SETTLE, world.commanded_openings)
             states.append(world.state())
-        hand = next((n for n, arm in enumerate(states[-1].arms) if arm.held == plan.target), 0)
+        held = [n for state in (states[-1], before) for n, arm in enumerate(state.arms) if arm.held == plan.target]
+        hand = held[0] if held else 0
         facts = Facts(Shown(plan, hand, tuple(states), 0.0), world.model_of(plan.target))
         return rule(facts) or facts.trouble()
 
@@ -135,7 +139,9 @@ class Answered:
         thing: With which thing.
         sentence: What was said.
         report: What the executor says of it.
-        fault: What is wrong in truth; empty when it was done.
+        fault: What is wrong in truth; empty when it was done, None where nobody knows what should have come of it.
+        moved: Whether the robot moved, in truth.
+        wall: Time that the command took, without building the world [s].
     """
 
     number: int
@@ -143,12 +149,14 @@ class Answered:
     thing: str
     sentence: str
     report: ExecutionReport
-    fault: str
+    fault: str | None
+    moved: bool = False
+    wall: float = 0.0
 
     @property
-    def right(self) -> bool:
-        """Whether the world is as the sentence says."""
-        return not self.fault
+    def right(self) -> bool | None:
+        """Whether the world is as the sentence says, or the answer as it should be; None where nobody knows."""
+        return None if self.fault is None else not self.fault
 
     def verdict(self) -> Verdict:
         """The same as a verdict."""
@@ -159,15 +167,16 @@ class Answered:
             self.action,
             report.answer,
             self.right,
-            self.fault,
-            self._cause() if self.fault else "",
-            report.answer.moved,
+            self.fault or "",
+            self._cause(self.fault) if self.fault else "",
+            self.moved,
             report.explanation,
             report.durations,
+            self.wall,
         )
 
-    def _cause(self) -> str:
+    def _cause(self, fault: str) -> str:
         """A fault in a word or two."""
         if not self.report.answer.moved:
             return f"answered {self.report.answer}"
-        return f"{self.fault.split(':')[0]} ({self.report.answer})"
+        return f"{fault.split(':')[0]} ({self.report.answer})"

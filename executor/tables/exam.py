@@ -1,17 +1,23 @@
 """New commands at a table carried out and judged by physics."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from executor.actions.witness import WitnessedWorld
 from executor.collection import in_processes
+from executor.execution.answer import OnAmbiguous
+from executor.execution.evaluation.case import Suite
 from executor.executor import Executor
 from executor.tables.commands import Answered, Heard, TableCommand, counter_command, tabletop_command
+from executor.tables.suite_commands import suite_command
 from executor.tables.table_doer import TableDoer
+from executor.tables.written_commands import written_commands
 
 if TYPE_CHECKING:
     from learning import Knowledge
@@ -34,6 +40,10 @@ class TableTrial:
         number: Number of the command.
         language: Language of the sentence.
         known: Sentences that were heard before.
+        suite: Of which suite the command is; None for one that can be carried out.
+        on_ambiguous: What to do where several things fit.
+        clear: Whether to put aside what is in the way.
+        written: File of commands that somebody wrote, of which this is the one of that number; None for others.
     """
 
     robot: str
@@ -42,6 +52,10 @@ class TableTrial:
     number: int
     language: str
     known: Heard = frozenset()
+    suite: Suite | None = None
+    on_ambiguous: OnAmbiguous = OnAmbiguous.ASK
+    clear: bool = False
+    written: Path | None = None
 
 
 @lru_cache(maxsize=1)
@@ -55,43 +69,44 @@ def _learned(path: str) -> "Knowledge":
 def answer(trial: TableTrial) -> Answered:
     """Make up a command, carry it out, and judge what came of it; equal trials go alike."""
     rng = np.random.default_rng([trial.seed, trial.number, *trial.robot.encode()])
-    command = MAKERS[trial.robot](rng, trial.language, trial.known)
+    if trial.written is not None:
+        command = written_commands(trial.robot, trial.written)[trial.number]
+    elif trial.suite is None:
+        command = MAKERS[trial.robot](rng, trial.language, trial.known)
+    else:
+        command = suite_command(trial.robot, trial.suite, trial.number, rng, trial.language, trial.known)
+    return carried_out(command, trial, rng)
+
+
+def carried_out(command: TableCommand, trial: TableTrial, rng: np.random.Generator) -> Answered:
+    """Carry out a command in its scene, and judge what came of it."""
     with WitnessedWorld(command.scene) as world:
         before = world.state()
-        executor = Executor(world, _learned(trial.knowledge), rng)
+        executor = Executor(world, _learned(trial.knowledge), rng, on_ambiguous=trial.on_ambiguous, clear=trial.clear)
         doer = executor.doer
         assert isinstance(doer, TableDoer)
         doer.on_start = world.watch
         doer.look()  # a robot that waits for a command looks about; it holds until something moves
+        begun = perf_counter()
         report = executor.execute(command.sentence)
+        wall = perf_counter() - begun
         doer.close()
-        fault = command.judge(world, before)
-    return Answered(trial.number, command.action, command.thing, command.sentence, report, fault)
+        moved = world.time > before.time
+        fault = None if command.judge is None else command.judge(world, before)
+    if command.expected is not None and not fault and report.answer is not command.expected:
+        fault = f"answered {report.answer}, not {command.expected}"
+    return Answered(trial.number, command.action, command.thing, command.sentence, report, fault, moved, wall)
 
 
 def answers(
-    robot: str,
-    knowledge: str,
-    commands: int,
-    seed: int,
-    *,
-    language: str = "en",
-    known: Heard = frozenset(),
-    jobs: int = 0,
-    on_answer: Callable[[], None] = lambda: None,
+    trials: Sequence[TableTrial], jobs: int = 0, on_answer: Callable[[], None] = lambda: None
 ) -> list[Answered]:
-    """Make up and carry out so many commands.
+    """Make up and carry out commands.
 
     Args:
-        robot: One of `MAKERS`.
-        knowledge: File of what was learned.
-        commands: How many.
-        seed: Seed of all of them.
-        language: Language of the sentences.
-        known: Sentences that were heard before.
+        trials: Which.
         jobs: Processes; 0 takes one a core.
         on_answer: Called after every command.
     """
-    trials = [TableTrial(robot, knowledge, seed, number, language, known) for number in range(commands)]
     done = sorted(in_processes(answer, trials, jobs, on_answer), key=lambda pair: pair[0])
     return [each for _, each in done]

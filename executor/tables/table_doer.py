@@ -8,24 +8,28 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from executor.actions.player import ActionPlayer, Played
-from executor.actions.quantities import quantities_of
-from executor.actions.things import corners_of, pose_of
+from executor.actions.action_plan import plan_action
+from executor.actions.quantities import Quantities, quantities_of
 from executor.errors import RefusalError
 from executor.execution.answer import Answer, OnAmbiguous
+from executor.execution.history import KEPT
 from executor.execution.stopwatch import Stopwatch
-from executor.execution.understood import Option, Referent, Understood, offer, parts, question
-from executor.follow import wait
-from executor.report import ExecutionReport, Outcome, answer_of, report_of, told
+from executor.execution.understood import Option, Referent, Understood, offer, parts, question, quoted
+from executor.report import ExecutionReport, joined, report_of, told
+from executor.tables.clearing import carrying_action, in_the_way, places_aside
 from executor.tables.places import Spot, spots_for
 from executor.tables.table_names import TableNames
-from executor.tables.table_view import TableView, alike
+from executor.tables.table_plan import TablePlan
+from executor.tables.table_runner import TableRunner
+from executor.tables.table_view import TableView, lost_colours
+from executor.tables.taken import Taken, as_taken
 from learning.concept_id import ACTION_SPACE, Concept
 from learning.grounding.scripts import script_of
 from learning.grounding.table_scene import SIDE_PLACES
 from learning.grounding.tongue import Tongue
 from learning.interpretation.interpretation import Goal
 from learning.interpretation.table_interpreter import TableGoal, TableInterpreter, TableReading, unknown_words
+from learning.perception.observation import Observation
 from learning.perception.observe_camera import observe_camera_world
 from learning.perception.robot_eye import RobotEye
 from robots.pose import FloatArray
@@ -40,16 +44,10 @@ FIRST_SPOTS = 40
 """The best of all places, from which those are taken"""
 APART = 0.05
 """so far apart [m]."""
-SAME = 0.06
-"""What is seen so near to where a thing should be is that thing [m]."""
-REST = 0.7
-"""Time [s] in which all comes to rest before the second look."""
-DISTURBED = 0.03
-"""Other things that moved further were disturbed [m]."""
-NEAR_BY = 0.2
-"""A thing that was moved along is so near to where it was [m]."""
 JOINS = 0.7
 """A word means nothing by itself when it was passed over in at least this share of its uses."""
+REMEMBERED = 2 * KEPT
+"""Looks that are remembered: at least those before the commands that can be undone."""
 FORGOTTEN = 0.5
 """Share of its uses that a meaning loses that led to what was not said."""
 
@@ -79,6 +77,7 @@ class TableDoer:
     Attributes:
         stopwatch: Times of the present command.
         on_start: Called with the thing's id in the world and the arm's name when an action begins.
+        on_progress: Called with what begins, see `Doer`.
     """
 
     def __init__(
@@ -93,11 +92,19 @@ class TableDoer:
         self.on_ambiguous = on_ambiguous
         self.stopwatch = Stopwatch()
         self.on_start: Callable[[int, str], None] = lambda thing, arm: None
+        self.on_progress: Callable[[object], None] = lambda step: None
         self._rng = rng
         self._interpreter = TableInterpreter(knowledge)
         self._names = TableNames(knowledge)
         self._eye: RobotEye | None = None
         self._seen: tuple[float, TableView] | None = None
+        self._taken: Taken | None = None
+        self._looks: dict[float, tuple[TableView, bool, Taken | None]] = {}
+        self._broken_off = False
+        self._choices: tuple[int, ...] = ()
+        self.runner = TableRunner(world, knowledge, rng, self.look)
+        self.runner.on_start = lambda thing, arm: self.on_start(thing, arm)
+        self.runner.on_progress = lambda step: self.on_progress(step)
 
     def look(self) -> TableView:
         """Look at the table; where nothing has moved since the last look, that holds."""
@@ -106,21 +113,39 @@ class TableDoer:
                 return self._seen[1]
             if self._eye is None:
                 self._eye = RobotEye(self.world.spec, self.world.robot)
-            state = self.world.state()
-            observation = observe_camera_world(state, self.world.spec, self._rng, eye=self._eye, robot=self.world.robot)
             before = None if self._seen is None else self._seen[1]
-            view = TableView.of(observation, before)
+            view = self._viewed(self._observed(self._eye), before)
+            if before is not None and not set(before.numbers) <= set(view.numbers):
+                # What lies in a thing looks like a part of it, unless it is known to be another.
+                again = self._viewed(self._observed(self._eye, lost_colours(view, before)), before)
+                view = max(view, again, key=lambda each: len(set(before.numbers) & set(each.numbers)))
             self._seen = self.world.time, view
+            self._looks.pop(self.world.time, None)
+            self._looks[self.world.time] = view, self._broken_off, self._taken
+            if len(self._looks) > REMEMBERED:
+                del self._looks[next(iter(self._looks))]
             return view
+
+    def _viewed(self, observation: Observation, before: TableView | None) -> TableView:
+        """A look as a view, in which what the hand has taken looks as it did before."""
+        held = None if self._taken is None else as_taken(observation, self._taken)
+        if held is None or self._taken is None:
+            return TableView.of(observation, before)
+        return TableView.of(held[0], before).numbered(held[1], self._taken.number)
+
+    def _observed(self, eye: RobotEye, apart: FloatArray | None = None) -> Observation:
+        """What the camera sees; `apart`: colours of things that are no parts of those that they lie in, (k, 3)."""
+        state, spec, robot = self.world.state(), self.world.spec, self.world.robot
+        return observe_camera_world(state, spec, self._rng, eye=eye, robot=robot, apart=apart)
 
     def understand(
         self, words: tuple[str, ...], view: TableView, last: int | None, choice: int | None = None
     ) -> TableUnderstood:
         """Understand one step; see `Doer`."""
         with self.stopwatch.part("interpret"):
-            reading = self._interpreter.interpret(
-                words, view.observation, held=view.held, last=view.index_of(last), choice=view.index_of(choice)
-            )
+            reading = self._interpreter.interpret(words, view.observation, held=view.held, last=view.index_of(last))
+            self._choices = () if choice is None else tuple(dict.fromkeys((*self._choices, choice)))
+            reading = self._chosen(reading, view)
             found = self._found(words, view, reading)
         if found.answer is not None or reading.action is None:
             return found
@@ -136,9 +161,15 @@ class TableDoer:
         return view
 
     def plan(self, understood: Understood, view: TableView, sentence: str) -> ExecutionReport:
-        """Say where a thing would go; nothing moves."""
+        """Say what would be done, and where a thing would go; nothing moves."""
         report = report_of(understood, sentence)
         goal = understood.goals[0]
+        try:
+            steps = plan_action(goal.action, self._quantities(understood))
+        except RefusalError as refusal:
+            return told(report, Answer.IMPOSSIBLE, str(refusal))
+        in_hand = steps.starts_held and view.held is not None and view.held == view.index_of(goal.object_id)
+        report = replace(report, plan=TablePlan((() if in_hand else steps.before) + steps.steps))
         where = "it is done where the thing is" if goal.position is None else f"it goes to {_metres(goal.position)}"
         return told(report, Answer.PLANNED, where)
 
@@ -147,26 +178,52 @@ class TableDoer:
         report = report_of(understood, sentence)
         assert isinstance(understood, TableUnderstood) and understood.reading is not None
         assert understood.reading.action is not None
-        goal = understood.goals[0]
+        if understood.blocked:
+            return self._cleared(understood, view, sentence)
+        goal, begun = understood.goals[0], self.world.time
         thing = view.index_of(goal.object_id)
-        real = None if thing is None else self._real(view, thing)
-        if thing is None or real is None:
-            return told(report, Answer.IMPOSSIBLE, "the thing that is meant was lost from sight")
-        begun = self.world.time
+        if thing is not None and not (view.held == thing and self._taken is not None):
+            self._taken = Taken.of(view, thing)
+        sound, self._broken_off = not self._broken_off, True  # so it stays where something raises on the way: a stop
         with self.stopwatch.part("move"), self._timed():
-            played, spot = self._play(understood.reading.action, goal, real, understood.spots)
-            if self.world.time > begun:
-                wait(self.world, REST, self.world.commanded_openings)
+            run = self.runner.carry_out(goal, understood.reading.action, understood.spots, view, sound=sound)
+        self._broken_off = not sound and self.world.time == begun
         self.stopwatch.add("simulated", self.world.time - begun)
-        report = replace(report, attempts=1)
-        if self.world.time == begun:
-            return told(report, Answer.IMPOSSIBLE, played.reason)
+        report = replace(report, attempts=run.attempts, outcome=run.outcome)
+        if run.outcome is None:
+            return told(report, Answer.IMPOSSIBLE if self.world.time == begun else Answer.FAILED, run.note)
+        return told(report, run.answer, joined(run.outcome.explanation, run.note))
+
+    def _cleared(self, understood: TableUnderstood, view: TableView, sentence: str) -> ExecutionReport:
+        """Put aside what is in the way, and carry the step out then."""
+        report, (number,) = report_of(understood, sentence), understood.blocked
+        index, moved = view.index_of(number), view.index_of(understood.goals[0].object_id)
+        assert index is not None and moved is not None
+        try:
+            action, graphlet = carrying_action(self.knowledge)
+        except RefusalError as refusal:
+            return told(report, Answer.IMPOSSIBLE, str(refusal))
+        spots = _apart(places_aside(index, moved, understood.spots[0], view.things, self.knowledge))
+        if not spots:
+            return told(report, Answer.IMPOSSIBLE, "what is in the way cannot be cleared: there is no free place")
+        with self.stopwatch.part("move"), self._timed():
+            run = self.runner.carry_out(Goal(number, spots[0].position, graphlet), action, spots, view)
+        if run.outcome is None or not run.outcome.right:
+            answer = Answer.IMPOSSIBLE if run.outcome is None else run.answer
+            why = joined("" if run.outcome is None else run.outcome.explanation, run.note)
+            return told(replace(report, outcome=run.outcome), answer, f"clearing what is in the way: {why}")
         now = self.look()
-        if not played.success:
-            outcome = Outcome(False, None, self._disturbed(thing, view, now), played.reason)
-            return told(replace(report, outcome=outcome), Answer.FAILED, played.reason)
-        outcome = self._judge(goal, thing, view, now, spot)
-        return told(replace(report, outcome=outcome), answer_of(outcome), outcome.explanation)
+        again = self.understand(understood.words, now, None, self._choices[-1] if self._choices else None)
+        if not again.clear:
+            return told(replace(report, cleared=(number,)), Answer.FAILED, again.reason)
+        return replace(self.carry_out(again, now, sentence), cleared=(number,))
+
+    def where(self, view: TableView, number: int) -> tuple[FloatArray, float] | None:
+        """Centre and half of the width of a thing; see `Doer`."""
+        index = view.index_of(number)
+        if index is None:
+            return None
+        return view.things.location[index], float(np.max(view.things.extent[index]) / 2)
 
     def acts(self, word: str) -> bool:
         """Whether a word may name an action."""
@@ -208,8 +265,20 @@ class TableDoer:
         )
 
     def resume(self) -> None:
-        """Take over the world as it is."""
-        self._seen = None
+        """Take over the world as it is: what was seen at the moment to which it was put back holds, numbers and all."""
+        then = self._looks.get(self.world.time)
+        if then is not None:
+            view, self._broken_off, self._taken = then
+            self._seen = self.world.time, view
+        elif self._seen is not None:
+            self._seen = np.nan, self._seen[1]  # looked at anew, with the numbers that things had
+
+    def _quantities(self, understood: Understood) -> Quantities:
+        """How much of each change was seen with the action."""
+        assert isinstance(understood, TableUnderstood) and understood.reading is not None
+        number = understood.reading.action
+        assert number is not None
+        return quantities_of(understood.goals[0].action, self.knowledge.spaces.actions.statistics(number))
 
     def close(self) -> None:
         """Free the renderer; a later look makes another."""
@@ -246,11 +315,12 @@ class TableDoer:
             goals = (Goal(view.numbers[reading.things[0]], None, graphlet),)
         options: tuple[Option, ...] = ()
         if answer is Answer.AMBIGUOUS:
-            names = self._names.apart(script_of(words), view.observation, reading.things)
-            options = tuple(
-                Option(view.numbers[index], name) for index, name in zip(reading.things, names, strict=True)
+            role, fitting = (
+                ("entity", reading.things) if len(reading.things) > 1 else ("destination", _grounds(reading))
             )
-            node = next(parts(reading.tree, "entity"), None)
+            names = self._names.apart(script_of(words), view.observation, fitting)
+            options = tuple(Option(view.numbers[index], name) for index, name in zip(fitting, names, strict=True))
+            node = next(parts(reading.tree, role), None)
             said = "" if node is None else f"“{' '.join(words[node.first - 1 : node.last])}”"
             reason = question(said, options)
         return TableUnderstood(
@@ -275,13 +345,22 @@ class TableDoer:
         thing = reading.things[0]
         language = self.knowledge.table_language
         wanted = spots_for(self._sound(reading), thing, view.things, self.knowledge.spaces, language.resting)
-        kept: list[Spot] = []
-        for spot in wanted[:FIRST_SPOTS]:
-            if all(np.linalg.norm(spot.position - other.position) > APART for other in kept):
-                kept.append(spot)
-        if not kept:
-            return replace(found, answer=Answer.IMPOSSIBLE, reason="there is no room where it shall go")
-        return replace(found, goals=(replace(goal, position=kept[0].position),), spots=tuple(kept[:SPOTS]))
+        if wanted:
+            spots = _apart(wanted)
+            return replace(found, goals=(replace(goal, position=spots[0].position),), spots=spots)
+        no_room = replace(found, answer=Answer.IMPOSSIBLE, reason="there is no room where it shall go")
+        blocking = in_the_way(self._sound(reading), thing, view.things, self.knowledge)
+        if blocking is None:
+            return no_room
+        index, spots = blocking[0], _apart(blocking[1])
+        name = self._names.apart(script_of(reading.words), view.observation, (index,))[0]
+        return replace(
+            no_room,
+            reason=f"{no_room.reason}: {name} is in the way",
+            goals=(replace(goal, position=spots[0].position),),
+            spots=spots,
+            blocked=(view.numbers[index],),
+        )
 
     def _sound(self, reading: TableReading) -> TableGoal:
         """Where a thing goes; of two opposite sides, the one that is said more surely."""
@@ -306,119 +385,54 @@ class TableDoer:
         if reading.tree is None or reading.action is None:
             return Answer.REFUSED, "no word says what to do" if reading.tree is not None else reading.explanation
         if not reading.things:
-            return Answer.IMPOSSIBLE, "nothing here is what the words say"
+            return Answer.IMPOSSIBLE, _nothing_is(reading, "nothing here is what the words say")
         if reading.nowhere:
-            return Answer.IMPOSSIBLE, "what it shall go to is not here"
-        if len(reading.things) > 1 and self.on_ambiguous is OnAmbiguous.ASK:
+            return Answer.IMPOSSIBLE, _nothing_is(reading, "what it shall go to is not here")
+        if (len(reading.things) > 1 or len(_grounds(reading)) > 1) and self.on_ambiguous is OnAmbiguous.ASK:
             return Answer.AMBIGUOUS, ""
         states = self.knowledge.spaces.actions[reading.action].states
-        if view.held is not None and view.held not in reading.things:
+        if view.held is not None and view.held not in reading.things and not self._broken_off:
             return Answer.IMPOSSIBLE, "the hand holds another thing; say where to put that one first"
         set_down = any(state.holds and not state.raised for state in states[1:]) and not states[-1].holds
         if set_down and view.held is None and reading.goal is None and self._tells_where(reading.words):
-            return Answer.REFUSED, "where it shall go was not understood"
+            if reading.absent:
+                return Answer.IMPOSSIBLE, _nothing_is(reading, "")
+            passed = f": I could make nothing of {quoted(reading.unheeded)}" if reading.unheeded else ""
+            return Answer.REFUSED, f"where it shall go was not understood{passed}"
         return None
+
+    def _chosen(self, reading: TableReading, view: TableView) -> TableReading:
+        """A reading with what was chosen where several things fitted, as what is done or as where it goes."""
+        for index in map(view.index_of, self._choices):
+            if len(reading.things) > 1 and index in reading.things:
+                reading = replace(reading, things=(index,))
+            elif reading.goal is not None and index in _grounds(reading):
+                reading = replace(reading, goal=replace(reading.goal, grounds=(index,)))
+        return reading
 
     def _tells_where(self, words: tuple[str, ...]) -> bool:
         """Whether people who speak this language say where things go."""
         tongue = self.knowledge.table_language.tongues[script_of(words)]
         return "destination" in tongue.grammar.rules
 
-    def _real(self, view: TableView, thing: int) -> int | None:
-        """Id of the thing in the world: grasps are chosen by the models of things, which the twin knows."""
-        where = view.things.location[thing]
-        state = self.world.state()
-        away = {each.id: float(np.linalg.norm(each.pose_object_in_world.position - where)) for each in state.objects}
-        held = {arm.held for arm in state.arms if arm.gripper_closed and arm.held is not None}
-        if thing == view.held and held:
-            return min(held, key=lambda each: away[each])
-        nearest = min(away, key=lambda each: away[each])
-        return nearest if away[nearest] < SAME else None
 
-    def _play(self, number: int, goal: Goal, real: int, spots: tuple[Spot, ...]) -> tuple[Played, Spot | None]:
-        """Play the action with the first place that can be reached."""
-        quantities = quantities_of(goal.action, self.knowledge.spaces.actions.statistics(number))
-        player = ActionPlayer(self.world, self._rng)
-        failed: tuple[Played, Spot | None] | None = None
-        for spot in spots or (None,):
-            there = None if spot is None else self._at_rest(real, spot)
-            try:
-                played = player.play(goal.action, real, there, quantities, lambda arm: self.on_start(real, arm))
-            except RefusalError as refusal:
-                return Played(False, str(refusal)), spot
-            if played.success or played.started:
-                return played, spot
-            failed = failed or (played, spot)
-        assert failed is not None
-        return failed
+def _apart(spots: list[Spot]) -> tuple[Spot, ...]:
+    """The best of many places that are apart from each other."""
+    kept: list[Spot] = []
+    for spot in spots[:FIRST_SPOTS]:
+        if all(np.linalg.norm(spot.position - other.position) > APART for other in kept):
+            kept.append(spot)
+    return tuple(kept[:SPOTS])
 
-    def _at_rest(self, real: int, spot: Spot) -> FloatArray:
-        """Where the centre comes to rest at a place, as high above its underside as it is now."""
-        if spot.onto is not None:
-            return spot.position  # half of its height as it was seen above the top of what bears it
-        centre = pose_of(self.world.state(), real).position
-        below = float(centre[2] - corners_of(self.world, real)[:, 2].min())
-        return np.array([spot.position[0], spot.position[1], below])
 
-    def _judge(self, goal: Goal, thing: int, before: TableView, now: TableView, spot: Spot | None) -> Outcome:
-        """Compare two looks."""
-        words: list[str] = []
-        error: float | None = None
-        doubt = ""
-        track = self._again(thing, before, now, spot)
-        if goal.action.states[-1].holds:
-            reached = now.feels
-            if reached:
-                words.append("the hand feels it between the fingers")
-            elif track is None:
-                reached, doubt = True, "the hand does not feel it, and it is not seen where it was"
-                words.append(doubt)
-            else:
-                words.append("the hand holds nothing")
-        elif now.held is not None and goal.action.states[0].holds:
-            reached = False
-            words.append("it is still in the hand")
-        elif spot is None:
-            reached = True
-            words.append("it was done")
-        elif track is None:
-            reached, doubt = True, "it cannot be seen any more"
-            words.append(doubt)
-        else:
-            error = float(np.linalg.norm(now.things.location[track, :2] - spot.position[:2]))
-            reached = error < SAME
-            words.append(f"it rests {1000 * error:.0f} mm from the middle of its place")
-        disturbed = self._disturbed(thing, before, now)
-        if disturbed:
-            words.append(f"{len(disturbed)} other thing{'s' if len(disturbed) > 1 else ''} moved as well")
-        return Outcome(reached, error, disturbed, "; ".join(words), doubt)
+def _grounds(reading: TableReading) -> tuple[int, ...]:
+    """Things to which it may go, but for itself."""
+    return () if reading.goal is None else tuple(each for each in reading.goal.grounds if each not in reading.things)
 
-    def _again(self, thing: int, before: TableView, now: TableView, spot: Spot | None) -> int | None:
-        """Which of the things that are seen now is the one that was handled: like it, and where it should be."""
-        where = before.things.location[thing] if spot is None else spot.position
-        off = [
-            float(np.linalg.norm(now.things.location[index, :2] - where[:2]))
-            if alike(before, thing, now, index)
-            else np.inf
-            for index in range(len(now.things.location))
-        ]
-        best = int(np.argmin(off)) if off else 0
-        return best if off and off[best] < NEAR_BY else None
 
-    def _disturbed(self, thing: int, before: TableView, now: TableView) -> tuple[int, ...]:
-        """Things that are not where they were, but somewhere near; what the arm hides now was not disturbed."""
-        if not len(now.things.location):
-            return ()
-        places = before.things.location
-        away = np.linalg.norm(now.things.location[:, None] - places[None], axis=2)
-        new = np.flatnonzero(away.min(axis=1) > DISTURBED)
-        return tuple(
-            before.numbers[index]
-            for index in range(len(places))
-            if index != thing
-            and away[:, index].min() > DISTURBED
-            and any(away[other, index] < NEAR_BY and alike(before, index, now, int(other)) for other in new)
-        )
+def _nothing_is(reading: TableReading, otherwise: str) -> str:
+    """That nothing is what some of the words say, by name where it is known which."""
+    return f"nothing here is {quoted(reading.absent)}" if reading.absent else otherwise
 
 
 def _referents(reading: TableReading, view: TableView) -> tuple[Referent, ...]:

@@ -1,5 +1,6 @@
 """How a table looked once, with numbers that things keep from look to look."""
 
+from colorsys import hls_to_rgb
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -50,6 +51,13 @@ class TableView:
         """Index of the thing with a number; None where it is not seen."""
         return self.numbers.index(number) if number in self.numbers else None
 
+    def numbered(self, index: int, number: int) -> "TableView":
+        """The view in which a thing has a number; what had that number gets the thing's."""
+        old = self.numbers[index]
+        swapped = [old if each == number else each for each in self.numbers]
+        swapped[index] = number
+        return replace(self, numbers=tuple(swapped))
+
     def with_moved(self, index: int, position: FloatArray | None, holds: bool) -> "TableView":
         """The view in which a thing is somewhere else, or in the hand."""
         location = np.array(self.things.location)
@@ -72,6 +80,13 @@ def looks(view: TableView, index: int) -> FloatArray:
 def alike(one: TableView, first: int, other: TableView, second: int) -> bool:
     """Whether two things may be the same by their colour."""
     return float(np.linalg.norm(looks(one, first) - looks(other, second))) < TableColour.kind_width
+
+
+def lost_colours(now: TableView, before: TableView) -> FloatArray:
+    """Red, green, blue of 255 of the things that were seen before and are not now, (k, 3)."""
+    lost = [index for index, number in enumerate(before.numbers) if number not in now.numbers]
+    hsl = [np.median(before.observation.colour[:, index], axis=0) for index in lost]
+    return np.array([hls_to_rgb(hue, light, pure) for hue, pure, light in hsl]).reshape(-1, 3) * 255.0
 
 
 def _kept_numbers(now: TableView, before: TableView) -> tuple[int, ...]:

@@ -20,6 +20,7 @@ from learning.evaluation.kinds import kinds_of, outside_vocabulary
 from learning.evaluation.machine import machine
 from learning.evaluation.public_tree import PublicNode
 from learning.train_robots.release import Release
+from robots.workers import end_with_parent
 
 MILESTONES = (80, 90)
 """Execution accuracies [%] for which it is told after how many commands they are reached."""
@@ -191,7 +192,8 @@ def _run(work: Callable[[Fold], Examined], folds: Sequence[Fold], jobs: int) -> 
         for fold in folds:
             yield fold, work(fold)
         return
-    with ProcessPoolExecutor(min(jobs, len(folds)), mp_context=get_context("spawn")) as pool:
+    context = get_context("spawn")
+    with ProcessPoolExecutor(min(jobs, len(folds)), mp_context=context, initializer=end_with_parent) as pool:
         # In the order of the folds, so that one process or many add up to the same last digit.
         yield from zip(folds, pool.map(work, folds), strict=True)
 

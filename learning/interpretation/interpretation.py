@@ -1,7 +1,7 @@
 """What comes of understanding a sentence: a goal, a tree, and an explanation."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from learning.grammar.rcl import RclNode
 from learning.graphs import ActionGraphlet
@@ -31,7 +31,12 @@ class Goal:
 
     object_id: int
     position: FloatArray | None
-    action: ActionGraphlet
+    action: ActionGraphlet = field(repr=False)
+
+    def __str__(self) -> str:
+        """Tell the goal in one line."""
+        where = "" if self.position is None else f" to {metres(self.position)}"
+        return f"object {self.object_id}{where} by {self.action}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from learning.grounding.scripts import script_of
 from learning.grounding.table_scene import PLACE_SPACE, TableRecord, TableScene, still_record
 from learning.grounding.tongue import Tongue
 from learning.interpretation.interpretation import listed
+from learning.interpretation.left_out import absent_phrases, unheeded_nodes
 from learning.interpretation.nearly import NearlyDenotation
 from learning.knowledge import Knowledge
 from learning.perception.gaps import gap_offsets
@@ -44,7 +45,8 @@ class TableReading:
         goal: Where they go; None where that is not told.
         unknown: Words that were never heard.
         explanation: What was understood, or why it was not.
-        understood: Whether there is an action and a thing to do it to.
+        unheeded: Words that surely name what a thing is like, and that the tree passes over.
+        absent: Words for things that nothing here is, among those that were understood and those passed over.
     """
 
     words: tuple[str, ...]
@@ -54,6 +56,8 @@ class TableReading:
     goal: TableGoal | None
     unknown: tuple[str, ...]
     explanation: str
+    unheeded: tuple[str, ...] = ()
+    absent: tuple[str, ...] = ()
 
     @property
     def understood(self) -> bool:
@@ -100,7 +104,8 @@ class TableInterpreter:
             why = "nothing of the sentence was understood"
             why += f"; never heard {listed(unknown)}" if unknown else ""
             return TableReading(words, None, None, (), None, unknown, why)
-        meant = self._denotation(observation, held).understand(tree)
+        denotation = self._denotation(observation, held)
+        meant = denotation.understand(tree)
         things = _indices(meant.things)
         if not things and last is not None and any(node.concept == REFERENCE for node in tree.nodes()):
             things = (last,)
@@ -110,7 +115,18 @@ class TableInterpreter:
         if held is not None and action is not None and self._starts_held(action):
             things = (held,)  # what is in the hand is what is put down, however little of it is seen
         goal = None if meant.goal is None else TableGoal(meant.goal[0], _indices(meant.goal[1]))
-        reading = TableReading(words, tree, action, things, goal, unknown, "")
+        passed = unheeded_nodes(tongue, words, tree, self.knowledge.spaces.mixtures)
+        reading = TableReading(
+            words,
+            tree,
+            action,
+            things,
+            goal,
+            unknown,
+            "",
+            tuple(words[node.first - 1] for node in passed),
+            tuple(dict.fromkeys(absent_phrases(words, [*tree.nodes(), *passed], denotation))),
+        )
         return replace(reading, explanation=self._said(reading, meant))
 
     def scene(self, observation: Observation, held: int | None = None) -> TableScene:

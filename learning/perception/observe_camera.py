@@ -15,7 +15,7 @@ from learning.perception.proprioception import Proprioception, frames_of, propri
 from learning.perception.robot_eye import HEIGHT, WIDTH, Look, RobotEye
 from learning.perception.table import find_table
 from learning.perception.tracker import Tracker
-from robots.pose import Pose
+from robots.pose import FloatArray, Pose
 from twin.scene_spec import SceneSpec
 from twin.state import ObjectState, WorldState
 
@@ -99,6 +99,7 @@ def observe_camera_world(
     frames: int = WORLD_FRAMES,
     eye: RobotEye | None = None,
     robot: "RobotModel | None" = None,
+    apart: FloatArray | None = None,
 ) -> Observation:
     """Observe a world that stands still through the camera of its robot.
 
@@ -110,6 +111,7 @@ def observe_camera_world(
         frames: How many pictures.
         eye: An eye for this scene to use again, which saves making one.
         robot: The robot, where it is loaded already.
+        apart: Red, green, blue of 255 of things that may stand in or on others and are no lids of them, (k, 3).
 
     Raises:
         PerceptionError: The robot has no camera or no such arm, or no table is in sight.
@@ -120,13 +122,17 @@ def observe_camera_world(
     own = proprioception_at(state, body, frames, arm)
     shown = [state.objects] * frames
     if eye is not None:
-        return _perceive(eye, own, shown, rng).observation
+        return _perceive(eye, own, shown, rng, apart).observation
     with RobotEye(spec, body) as fresh:
-        return _perceive(fresh, own, shown, rng).observation
+        return _perceive(fresh, own, shown, rng, apart).observation
 
 
 def _perceive(
-    eye: RobotEye, own: Proprioception, shown: Iterable[Iterable[ObjectState]], rng: np.random.Generator
+    eye: RobotEye,
+    own: Proprioception,
+    shown: Iterable[Iterable[ObjectState]],
+    rng: np.random.Generator,
+    apart: FloatArray | None = None,
 ) -> Perceived:
     """Take a picture of every frame, and follow what is in them."""
     tracker: Tracker | None = None
@@ -135,7 +141,7 @@ def _perceive(
         look: Look = eye.look(body, objects, rng)
         if tracker is None:
             table = find_table([look], eye.model, rng)
-            tracker = Tracker(table, eye.model, rng)
+            tracker = Tracker(table, eye.model, rng, apart)
         sightings.append(tracker.step(look, own.tool[number], bool(own.closed[number]), float(own.opening[number])))
     if tracker is None:
         raise PerceptionError("there are no pictures to look at: the demo holds no state")

@@ -108,7 +108,7 @@ def standing_out(look: Look, view: TableView) -> Pixels:
     return Pixels(pixels, depth, points, colours, part, (depth > 0) & (agreeing >= 2), exposed)
 
 
-def pieces_of(seen: Pixels, chosen: NDArray[np.bool_]) -> list[Piece]:
+def pieces_of(seen: Pixels, chosen: NDArray[np.bool_], apart: FloatArray | None = None) -> list[Piece]:
     """The things that some pixels show, without knowing any of them from before.
 
     Parts of one colour that are together in space are one thing, and so is a thing with its lid; parts of a few pixels
@@ -117,17 +117,20 @@ def pieces_of(seen: Pixels, chosen: NDArray[np.bool_]) -> list[Piece]:
     Args:
         seen: All that stands out.
         chosen: Which pixels to look at, (n,).
+        apart: Red, green, blue of things that may lie in or on others and are no parts of them, (k, 3); None: none.
     """
     if not chosen.any():
         return []
     labels, sizes = np.unique(seen.part[chosen], return_counts=True)
     masks = [chosen & (seen.part == label) for label in labels[sizes >= LEAST_PIXELS]]
     masks = [mask for mask in masks if (mask & seen.trusted).sum() >= LEAST_PIXELS // 2]
+    if apart is not None:
+        masks = [cut for mask in masks for cut in _cut(seen, mask, apart)]
     masks.sort(key=lambda mask: -int(mask.sum()))
     things: list[NDArray[np.bool_]] = []
     for mask in masks:
         for number, thing in enumerate(things):
-            if _one_thing(seen, thing, mask):
+            if _one_thing(seen, thing, mask, apart):
                 things[number] = thing | mask
                 break
         else:
@@ -147,19 +150,44 @@ def joined(pieces: Sequence[Piece]) -> Piece:
     )
 
 
-def _one_thing(seen: Pixels, large: NDArray[np.bool_], small: NDArray[np.bool_]) -> bool:
+def _one_thing(
+    seen: Pixels, large: NDArray[np.bool_], small: NDArray[np.bool_], apart: FloatArray | None = None
+) -> bool:
     """Whether a smaller part belongs to the thing that a larger one shows."""
     one, other = seen.points[large & seen.trusted], seen.points[small & seen.trusted]
     distance, _ = cKDTree(one).query(other)
     if np.min(distance) > TOGETHER:
         return False
     total = seen.colours.sum(axis=1)
-    chroma = [np.median(seen.colours[each, :2] / (total[each] + 1.0)[:, None], axis=0) for each in (large, small)]
+    chroma = [np.median(_chroma(seen.colours[each]), axis=0) for each in (large, small)]
     dark = min(float(np.median(total[large])), float(np.median(total[small]))) + 1.0
-    if np.abs(chroma[0] - chroma[1]).sum() < ANOTHER_COLOUR + CHROMA_NOISE / dark:
+    another = ANOTHER_COLOUR + CHROMA_NOISE / dark
+    if np.abs(chroma[0] - chroma[1]).sum() < another:
         return True
+    if apart is not None and np.any(np.abs(_chroma(apart) - chroma[1]).sum(axis=1) < another):
+        return False
     on_top = np.percentile(other[:, 2], 10) > np.percentile(one[:, 2], 75) - SUPPORT
     inside = np.all(
         (other[:, :2].mean(axis=0) > one[:, :2].min(axis=0)) & (other[:, :2].mean(axis=0) < one[:, :2].max(axis=0))
     )
     return bool(on_top and inside and small.sum() < LID_SHARE * large.sum())
+
+
+def _cut(seen: Pixels, mask: NDArray[np.bool_], apart: FloatArray) -> list[NDArray[np.bool_]]:
+    """A connected part without what has the colour of a known thing, and that by itself, where it is the smaller half.
+
+    Where things touch, depth does not part them.
+    """
+    chroma, total = _chroma(seen.colours), seen.colours.sum(axis=1)
+    found: list[NDArray[np.bool_]] = []
+    for known in _chroma(apart):
+        like = mask & (np.abs(chroma - known).sum(axis=1) < ANOTHER_COLOUR + CHROMA_NOISE / (total + 1.0))
+        if LEAST_PIXELS <= like.sum() < 0.5 * mask.sum():
+            found.append(like)
+            mask = mask & ~like
+    return [*found, mask]
+
+
+def _chroma(colours: FloatArray) -> FloatArray:
+    """Red and green, each over the sum of the channels, (n, 2)."""
+    return np.asarray(colours[:, :2] / (colours.sum(axis=1) + 1.0)[:, None])

@@ -22,6 +22,7 @@ from learning.errors import PerceptionError
 from learning.perception.camera_observation import Perceived
 from learning.perception.observation_file import load_observation, save_observation
 from learning.perception.observe_camera import USUAL, Eyesight
+from robots.workers import end_with_parent
 
 PERCEPTION_VERSION = 2
 """Raised when perception would give other observations for the same demo."""
@@ -167,6 +168,7 @@ def _work(task: _Task) -> tuple[int, PerceivedDemo]:
     """What a process does with one demo."""
     from threadpoolctl import threadpool_limits
 
+    end_with_parent()
     number, demo, cache, seed, eyesight = task
     # The processes fill the processors already; Mesa reads this when a context is made.
     os.environ["LP_NUM_THREADS"] = "1"

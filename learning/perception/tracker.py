@@ -54,15 +54,19 @@ class Tracker:
         tracks: The objects known, in the order in which they were found.
     """
 
-    def __init__(self, table: Table, camera: CameraModel, rng: np.random.Generator) -> None:
+    def __init__(
+        self, table: Table, camera: CameraModel, rng: np.random.Generator, apart: FloatArray | None = None
+    ) -> None:
         """Begin without any object.
 
         Args:
             table: Where they stand.
             camera: What looks at them.
             rng: Source of all randomness.
+            apart: Colours of things that are no lids of what they stand in or on, see `pieces_of`.
         """
         self.tracks: list[Track] = []
+        self._apart = apart
         self._table, self._camera, self._rng = table, camera, rng
         self._view: TableView | None = None
         self._boxes = BoxMaker(table, camera)
@@ -93,7 +97,7 @@ class Tracker:
             mine = owner == number
             if (mine & seen.trusted).sum() >= LEAST_PIXELS // 2:
                 found[number] = seen.piece(mine)
-        loose = self._match(pieces_of(seen, unowned(seen, owner)), found, eye)
+        loose = self._match(pieces_of(seen, unowned(seen, owner), self._apart), found, eye)
         loose = self._feel(loose, found, eye)
         sightings = [self._corrected(track, found.get(number), eye) for number, track in enumerate(self.tracks)]
         for each in self._newcomers.watch(loose, self.tracks, eye, self._frame):

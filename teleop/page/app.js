@@ -1,6 +1,7 @@
 // The page: one WebSocket to the server, the picture, and what a person does with buttons, keys and sticks.
 
-import {Operator, touchStick, keyName, AXES, BUTTONS} from "./gamepad.js";
+import {Operator, touchStick, keyName, BUTTONS} from "./gamepad.js";
+import {keysFor, shownControls} from "./legend.js";
 import {Stage} from "./stage.js";
 
 const RETRY_MS = 1500;
@@ -12,16 +13,11 @@ const SHOWN_NOTICES = 8;
 const RELEASE_AFTER_MS = 700; // a stop that two hands press at once, or one twice, is not released by the second press
 const DECK_BUTTONS = ["record", "stop-deck", "keep", "discard", "redo", "success", "failure"];
 const byId = (name) => document.getElementById(name);
-const KEYS_SHOWN = {" ": "Space", space: "Space", arrowup: "↑", arrowdown: "↓", arrowleft: "←", arrowright: "→",
-  enter: "Enter", escape: "Esc", backspace: "⌫"};
-const CONTROLS_SHOWN = {left_x: "left stick ↔", left_y: "left stick ↕", right_x: "right stick ↔",
-  right_y: "right stick ↕", left_trigger: "LT", right_trigger: "RT", left_bumper: "LB", right_bumper: "RB",
-  left_stick: "press left stick", right_stick: "press right stick", up: "D-pad ↑", down: "D-pad ↓",
-  left: "D-pad ←", right: "D-pad →", a: "A", b: "B", x: "X", y: "Y", back: "Back", start: "Start", guide: "Guide"};
-
 const state = {socket: null, opened: false, yours: false, free: true, wanted: true, status: null, setup: null,
   seq: 0, noticed: 0, holding: false, blind: false, enabled: true, speedTimer: 0,
   stoppedAt: 0, releases: false};
+// What the page adds for telling and doing, where the server has it: teleop itself knows nothing of words.
+const talk = {part: null, loading: false, waiting: []};
 
 // The token is in the address once; from then on only this tab knows it.
 const given = new URLSearchParams(location.hash.slice(1)).get("token");
@@ -87,6 +83,10 @@ function hearBytes(data) {
 function hearText(message) {
   if (message.type === "status") showStatus(message);
   else if (message.type === "setup") showSetup(message);
+  else if (message.type === "talk" || message.type === "knowledge") {
+    if (talk.part) talk.part.hear(message);
+    else talk.waiting.push(message);
+  }
   else if (message.type === "control") {
     Object.assign(state, {yours: message.yours, free: message.free, pages: message.pages});
     if (message.free && state.wanted) send({type: "control", action: "take"});
@@ -161,10 +161,19 @@ function showStatus(status) {
   showDeck();
 }
 
+async function startTalk() {
+  if (talk.loading) return;
+  talk.loading = true;
+  const {Talk} = await import("./talk.js");
+  talk.part = new Talk({send, stage, state, canvas});
+  for (const message of talk.waiting.splice(0)) talk.part.hear(message);
+  showDeck();
+}
+
 function showDeck() {
   const deck = state.status?.deck;
   if (!deck) return;
-  const {mode} = deck;
+  const mode = state.status.lent ? "lent" : deck.mode;
   byId("deck").dataset.mode = mode;
   const said = `${deck.sentences} sentence${deck.sentences === 1 ? "" : "s"}`;
   setText("deck", {
@@ -172,11 +181,12 @@ function showDeck() {
     recording: `Recording ${deck.file}: ${deck.seconds.toFixed(1)} s, ${said}`,
     review: `${deck.file} ${deck.outcome ? `(${deck.outcome}) ` : ""}waits, ${said}: describe, keep or discard it.`,
     replaying: `Replaying, ${deck.seconds.toFixed(1)} of ${deck.duration.toFixed(1)} s`,
+    lent: `Driving is locked: ${state.status.lent}.`,
   }[mode]);
   const can = {
     record: mode === "idle", "stop-deck": mode === "recording" || mode === "replaying", keep: mode === "review",
     discard: mode === "recording" || mode === "review", redo: mode === "recording" || mode === "review",
-    describe: mode !== "replaying", success: mode === "review", failure: mode === "review",
+    describe: mode !== "replaying" && mode !== "lent", success: mode === "review", failure: mode === "review",
     replay: mode === "idle" && byId("demos").options.length > 0, reset: mode === "idle", another: mode === "idle",
   };
   for (const [name, possible] of Object.entries(can)) {
@@ -185,10 +195,13 @@ function showDeck() {
   }
   byId("speed").disabled = !state.yours;
   for (const button of byId("arms").children) button.disabled = !state.yours;
+  document.body.dataset.lent = state.status.lent ? "yes" : "no";
+  talk.part?.show();
 }
 
 function showSetup(setup) {
   state.setup = setup;
+  if (setup.talks) startTalk();
   operator.setKeys(setup.keys, setup.slow);
   byId("arm-field").hidden = setup.choices.length < 2;
   byId("arms").replaceChildren(...setup.choices.map((arm) => {
@@ -219,26 +232,9 @@ function showSetup(setup) {
   }));
 }
 
-function shownControls(text) {
-  return text.split("|").map((part) => part.trim().replace(/^-/, "").split(/\s*[+-]\s*/).map(
-    (each) => CONTROLS_SHOWN[each.trim()] ?? each.trim()).join(part.includes("-") ? ", " : " + ")).join(" or ");
-}
-
-/** Keys that play any of the controls of an action; a chord needs a key that plays the whole of it. */
-function keysFor(controls, keys) {
-  const wanted = controls.split("|").flatMap((each) => {
-    const names = each.match(/[a-z_]+/g) ?? [];
-    return names.some((name) => AXES.includes(name)) || each.includes("-") ? names : [names.join("+")];
-  });
-  const found = Object.entries(keys).filter(([, plays]) => {
-    const names = (plays.match(/[a-z_]+/g) ?? []).join("+");
-    return wanted.includes(names);
-  });
-  return found.map(([key]) => KEYS_SHOWN[key] ?? key.toUpperCase()).join(" ");
-}
-
 function showViews() {
   document.body.dataset.pictures = String(stage.frames);
+  talk.part?.place(stage.marks);
   const names = stage.views;
   const box = byId("views");
   if (box.dataset.names !== names.join()) {

@@ -8,6 +8,7 @@ export class Stage {
     this.view = "";
     this.frames = 0;
     this.seen = null; // orientation of the picture, for driving along its axes
+    this.marks = []; // where what is marked is in the picture, as placed() has it
     this.works = true;
     this.pointers = new Map();
     if (!canvas.transferControlToOffscreen) {

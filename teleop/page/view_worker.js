@@ -5,8 +5,8 @@ import {Viewer} from "./viewer.js";
 let viewer = null;
 
 function tell() {
-  const {views, view, frames, seen} = viewer;
-  postMessage({views, view, frames, seen, works: Boolean(viewer.gl)});
+  const {views, view, frames, seen, marks} = viewer;
+  postMessage({views, view, frames, seen, marks, works: Boolean(viewer.gl)});
 }
 
 onmessage = ({data: [name, ...values]}) => {

@@ -1,5 +1,7 @@
 // Draws the scene with WebGL2: all meshes in one call, poses in a texture, one light with a shadow. Runs in a worker.
 
+import {placed} from "./projection.js";
+
 const VERTEX = `#version 300 es
 precision highp float;
 layout(location=0) in vec3 corner;
@@ -88,6 +90,7 @@ export class Viewer {
     this.fence = null;
     this.slow = SLOW_MS / 2;
     this.quality = PIXELS.length - 1;
+    [this.marked, this.marks, this.shown] = [[], [], ""]; // places to be marked, where they are in the picture
     this.gl = canvas.getContext("webgl2", {antialias: true, alpha: false, powerPreference: "high-performance"});
     if (!this.gl) return;
     this.prepare();
@@ -101,6 +104,13 @@ export class Viewer {
   /** Take the size on the screen [CSS pixel], pixels per CSS pixel, and the colour behind everything. */
   setFrame(width, height, ratio, sky) {
     Object.assign(this, {width, height, ratio, sky});
+    this.redraw();
+  }
+
+  /** Take what is marked in the scene: centre and half of the width of each [m]. */
+  setMarks(marks) {
+    this.marked = marks;
+    this.shown = "";
     this.redraw();
   }
 
@@ -297,7 +307,10 @@ export class Viewer {
     const seen = opticalQuaternion(axes);
     const turned = !this.seen || Math.abs(seen.reduce((sum, value, i) => sum + value * this.seen[i], 0)) < SAME_VIEW;
     if (turned) this.seen = seen;
-    if (turned || this.frames % TELL_EVERY === 1) this.changed();
+    this.marks = this.marked.map((each) => placed(each, clip, axes[0], this.width, this.height));
+    const shown = JSON.stringify(this.marks);
+    if (turned || shown !== this.shown || this.frames % TELL_EVERY === 1) this.changed();
+    this.shown = shown;
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     if (this.flight) this.redraw();

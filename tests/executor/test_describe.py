@@ -74,7 +74,7 @@ def test_bad_requests_are_told(learned: Path, tmp_path: Path) -> None:
     complains(run("describe", learned), "give either a demo or --scene")
     complains(run("describe", learned, tmp_path / "none.mcap"), "no such demo")
     complains(run("describe", learned, "--scene", "board", "--language", "ar"), "ARABIC", "LATIN")
-    complains(run("describe", learned, "--scene", "tabletop"), "is a table", "boards")
+    complains(run("describe", learned, "--scene", "tabletop"), "is a table", "on the board")
     complains(run("evaluate", "describe"), "give either a folder of demos or --train-robots")
     data = json.loads(learned.read_text())
     del data["phrasings"]

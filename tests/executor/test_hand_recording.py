@@ -65,6 +65,15 @@ def test_without_a_terminal_it_says_so(tmp_path: Path) -> None:
     assert "the keyboard needs a terminal" in done.stderr
 
 
+def test_a_gamepad_that_is_not_there_is_told_at_once(tmp_path: Path) -> None:
+    arguments = ["record", "--device", "gamepad", "--pad", "no such gamepad", "--seconds", "0.2", "-o", str(tmp_path)]
+    done = subprocess.run(
+        [sys.executable, "-m", "executor.cli", *arguments], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0
+    assert "plugged in" in done.stderr and "the robot waits for it" in done.stderr
+
+
 def test_a_window_needs_a_display(monkeypatch: pytest.MonkeyPatch) -> None:
     from twin import SceneSpec, TwinError, World
 

@@ -44,6 +44,15 @@ def test_every_concept_and_every_action_is_on_the_page(knowledge: Knowledge) -> 
         assert f'aria-label="action graphlet {graphlet}"' in page
 
 
+def test_concepts_with_words_come_first_and_the_others_are_folded(knowledge: Knowledge) -> None:
+    page = knowledge_page(knowledge, "k.json")
+    section = page[page.index("<h2>location") : page.index("<h2>direction")]
+    assert "<details><summary>64 that no word means</summary>" in section
+    section = page[page.index("<h2>shape") : page.index("<h2>location")]
+    unsaid = section.index("<details>") if "<details>" in section else len(section)
+    assert section.index("cube") < unsaid and section.index("prism") < unsaid
+
+
 def test_the_page_is_well_formed_and_loads_nothing(knowledge: Knowledge) -> None:
     page = knowledge_page(knowledge, "<b>&.json")
     parser = _Balance()

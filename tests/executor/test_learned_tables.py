@@ -15,6 +15,8 @@ from executor.learned_tables import (
 from learning import Knowledge
 from learning.concept_id import Concept
 from learning.concepts.feature_space import FEATURE_SPACES
+from learning.concepts.table_spaces import TableColour, TableShape
+from learning.grounding.tongue import Tongue
 from learning.perception.board_noise import hsl
 from twin.board import COLOURS_RGB
 
@@ -27,6 +29,31 @@ def test_a_patch_has_the_colour_of_the_concept(name: str) -> None:
     )  # rounded to whole numbers
 
 
+def test_a_patch_of_a_colour_seen_at_a_table_is_not_darker_than_it() -> None:
+    mean = TableColour.embed(np.array(hsl(COLOURS_RGB["white"])))
+    assert colour_of(mean, TableColour) == colour_of(
+        FEATURE_SPACES["colour"].embed(np.array(hsl(COLOURS_RGB["white"])))
+    )
+
+
+def test_shapes_with_the_same_highest_bins_are_told_apart() -> None:
+    bins = np.zeros(33)
+    bins[[5, 16, 26]] = 0.3, 0.5, 0.2
+    flat, tall = (TableShape.embed(np.array([*bins, *sides])) for sides in ((0.1, 0.1, 0.02), (0.1, 0.1, 0.2)))
+    assert described("shape", flat) != described("shape", tall)
+    assert described("shape", np.sqrt(bins)) != described("shape", np.sqrt(np.roll(bins[::-1], -1)))
+
+
+def test_words_of_tables_stand_with_what_they_mean_too() -> None:
+    learned = Knowledge("table")
+    tongue = learned.table_language.tongues["LATIN"] = Tongue()
+    tongue.grounding.add("red", Concept("colour", 2), 9.0)
+    tongue.grounding.add("grab", Concept("action", 1), 5.0)
+    words = words_of_concepts(learned)
+    assert words[Concept("colour", 2)] == [("red", 1.0, 9.0)]
+    assert words[Concept("action", 1)] == [("grab", 1.0, 5.0)]
+
+
 @pytest.mark.parametrize(
     ("space", "mean", "words"),
     [
@@ -34,6 +61,8 @@ def test_a_patch_has_the_colour_of_the_concept(name: str) -> None:
         ("distance", (0.05,), "50 mm"),
         ("direction", (0.0, 1.0, 0.0), "azimuth 90°, altitude 0°"),
         ("direction", (0.0, 0.0, 1.0), "altitude 90°"),
+        ("size", (np.log(0.05),), "50 mm, mean of its sides"),
+        ("weight", (0.12,), "120 g"),
     ],
 )
 def test_a_concept_is_described_by_its_mean(space: str, mean: tuple[float, ...], words: str) -> None:

@@ -24,7 +24,9 @@ def test_the_demo_command_shows_learns_and_does(tmp_path: Path) -> None:
     assert said["demos"] == 3 and said["commands"] == 1
     assert result.exit_code == (0 if said["right"] == 1 else 1)
     assert len(list(load_demos(out / "demos"))) == 3
-    assert Knowledge.load(out / "knowledge.json").demos == 3
+    learned = Knowledge.load(out / "knowledge.json")
+    assert learned.demos == 3
+    assert learned.phrasings.by_script, "it was not learned how the language is spoken, so nothing can be described"
     assert (out / "command.png").stat().st_size > 1000
     assert not list(out.glob("*.partial"))
 

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from executor.tables.table_view import TableView
+from executor.tables.table_view import TableView, lost_colours
+from executor.tables.taken import Taken, as_taken
 from learning.perception.observation import Observation
 
 RED, BLUE = [0.0, 0.8, 0.5], [0.62, 0.8, 0.5]
@@ -54,3 +55,33 @@ def test_nothing_is_felt_by_an_open_hand() -> None:
         look(([0.3, 0.3, 0.5], RED)), gripper_closed=np.ones(6, dtype=bool), gripper_opening=np.full(6, 0.04)
     )
     assert TableView.of(closed).held == 0
+
+
+def test_the_colours_of_what_is_not_seen_any_more_are_told() -> None:
+    before = TableView.of(look(([0.5, 0.2, 0.05], RED), ([0.6, -0.2, 0.05], BLUE)))
+    now = TableView.of(look(([0.6, -0.2, 0.05], BLUE)), before)
+    (lost,) = lost_colours(now, before)
+    assert np.allclose(lost, [229.5, 25.5, 25.5])
+    assert lost_colours(before, before).shape == (0, 3)
+
+
+def test_what_the_hand_took_looks_and_is_called_as_before_however_little_of_it_is_seen() -> None:
+    before = TableView.of(look(([0.5, 0.2, 0.05], RED), ([0.6, -0.2, 0.05], BLUE)))
+    taken = Taken.of(before, 0)
+    hand = {"gripper_closed": np.ones(6, dtype=bool), "gripper_opening": np.full(6, 0.04)}
+    for now in (
+        replace(look(([0.6, -0.2, 0.05], BLUE)), **hand),  # fingers hide all of it
+        replace(look(([0.6, -0.2, 0.05], BLUE), ([0.3, 0.32, 0.48], BLUE)), **hand),  # a scrap of it in another colour
+    ):
+        found = as_taken(now, taken)
+        assert found is not None
+        view = TableView.of(found[0], before).numbered(found[1], taken.number)
+        assert view.held == view.index_of(0) == found[1]
+        assert np.allclose(view.observation.colour[:, found[1]], RED)
+        assert np.allclose(view.things.location[found[1]], [0.3, 0.3, 0.5], atol=0.05)
+        assert sorted(view.numbers) == [0, 1]
+
+
+def test_an_open_hand_has_taken_nothing() -> None:
+    view = TableView.of(look(([0.5, 0.2, 0.05], RED)))
+    assert as_taken(look(([0.5, 0.2, 0.05], RED)), Taken.of(view, 0)) is None

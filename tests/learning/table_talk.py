@@ -6,7 +6,7 @@ import numpy as np
 
 from learning.concept_id import Concept
 from learning.grounding.ngrams import words_of
-from learning.grounding.table_scene import BESIDE, SIDE_PLACES, TableRecord, TableScene
+from learning.grounding.table_scene import BESIDE, OVER, SIDE_PLACES, TableRecord, TableScene
 from teleop.annotators.facts import Destination, Relation, TableAction, TableFacts, Thing
 from teleop.annotators.telling import tell_table
 
@@ -21,9 +21,12 @@ SIDES: tuple[Relation, ...] = ("left", "right", "front", "behind")
 
 
 def table_talk(
-    rng: np.random.Generator, count: int, language: str, people: int = 4
+    rng: np.random.Generator, count: int, language: str, people: int = 4, inside: float = 0.0
 ) -> Iterator[tuple[list[tuple[str, ...]], TableRecord, TableScene, TableAction]]:
-    """Words of sentences, what was shown (nothing measured, and in symbols), and the action, of some demos."""
+    """Words of sentences, what was shown (nothing measured, and in symbols), and the action, of some demos.
+
+    A share `inside` of the things that are not brought to a corner is brought into another.
+    """
     nothing = np.zeros((0, 3))
     for _ in range(count):
         things = tuple(
@@ -32,7 +35,10 @@ def table_talk(
         action = list(ACTIONS)[int(rng.integers(len(ACTIONS)))]
         side = int(rng.integers(4))
         by_place = rng.random() < 0.3
-        goal = Destination(place=("top", "left")) if by_place else Destination(relation=SIDES[side], reference=1)
+        into = inside > 0.0 and rng.random() < inside
+        relation: Relation = "in" if into else SIDES[side]
+        goal = Destination(place=("top", "left")) if by_place else Destination(relation=relation, reference=1)
+        reached = frozenset((OVER,)) if into else frozenset((Concept("direction", side), BESIDE))
         facts = TableFacts(action, things[0], things, None if action == "pick up" else goal, action == "put down")
         number, parts = ACTIONS[action]
         goes = action != "pick up"
@@ -47,7 +53,7 @@ def table_talk(
             action=number,
             parts=parts,
             goal=frozenset((SIDE_PLACES[0], SIDE_PLACES[2])) if goes and by_place else frozenset(),
-            goal_relations={1: frozenset((Concept("direction", side), BESIDE))} if goes and not by_place else {},
+            goal_relations={1: reached} if goes and not by_place else {},
             ground=1 if goes and not by_place else None,
             unseen={},
         )

@@ -9,7 +9,7 @@ from learning.perception.observe_camera import observe_camera_demo, observe_came
 from learning.perception.surface_colour import hsl_of
 from robots.hand_dynamics import HandDynamics
 from tests.learning.camera_demos import demo_of, robot, still, table
-from twin import World
+from twin import ObjectSpec, SceneSpec, World
 
 NAMES = (("small_red_can", 0.50, -0.10), ("small_blue_carton", 0.55, 0.12), ("small_green_tub", 0.44, 0.02))
 
@@ -41,6 +41,22 @@ def test_every_object_is_found_where_it_stands_with_its_colour_and_size() -> Non
     assert seen.visible is not None and seen.visible.all()
     assert set(seen.features) == {"size", "weight", "glimpsed_shape"}
     assert np.isnan(seen.features["weight"]).all()  # nothing was lifted
+
+
+def test_what_lies_in_a_bowl_is_seen_by_those_who_know_of_it() -> None:
+    """The bowl's rim hides where the apple ends: without its colour the two are one thing."""
+    apple = ObjectSpec.of_model(0, "orange_apple", (0.655, -0.137, 0.022))
+    bowl = ObjectSpec.of_model(1, "blue_bowl", (0.655, -0.137, 0.022))
+    with World(SceneSpec(name="in", kind="table", robot="baxter", objects=(apple, bowl))) as world:
+        state, spec = world.state(), world.spec
+    alone = observe_camera_world(state, spec, np.random.default_rng(0))
+    both = observe_camera_world(state, spec, np.random.default_rng(0), apart=255.0 * np.array([apple.rgb]))
+    other = observe_camera_world(state, spec, np.random.default_rng(0), apart=255.0 * np.array([[0.1, 0.6, 0.1]]))
+    assert len(alone.object_ids) == len(other.object_ids) == 1
+    assert len(both.object_ids) == 2
+    hues = np.median(both.colour[..., 0], axis=0)
+    seen = int(np.abs(hues - hsl_of(255 * np.array(apple.rgb))[0]).argmin())
+    assert np.linalg.norm(both.location[-1, seen, :2] - apple.position[:2]) < 0.015
 
 
 def test_the_same_seed_gives_the_same_observation() -> None:

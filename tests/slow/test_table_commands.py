@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from executor.tables.exam import answers
+from executor.tables.exam import TableTrial, answers
 from executor.tables.learned import from_table_collection
 
 
@@ -12,7 +12,8 @@ from executor.tables.learned import from_table_collection
 @pytest.mark.parametrize("robot", ["baxter", "mico_segway"])
 def test_new_commands_are_carried_out_after_the_scripted_collection(robot: str, tmp_path: Path) -> None:
     learned = from_table_collection(robot, tmp_path, None, 0, 0, lambda: None)
-    done = answers(robot, str(learned.path), 30, 1, known=learned.heard)
-    assert sum(each.right for each in done) >= 0.85 * len(done), [each.verdict().to_dict() for each in done]
+    trials = [TableTrial(robot, str(learned.path), 1, number, "en", learned.heard) for number in range(30)]
+    done = answers(trials)
+    assert sum(bool(each.right) for each in done) >= 0.85 * len(done), [each.verdict().to_dict() for each in done]
     trusted = [each for each in done if each.report.success]
     assert sum(not each.right for each in trusted) <= 0.1 * len(trusted)

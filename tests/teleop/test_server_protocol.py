@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from teleop.gamepad import AXES, BUTTONS
 from teleop.server_files import file_response, page_files
-from teleop.server_protocol import Do, Input, ProtocolError, Set, read_message
+from teleop.server_protocol import Do, Input, ProtocolError, Set, Talk, read_message
 
 INPUT = {
     "type": "input",
@@ -26,6 +26,8 @@ def test_messages_are_read() -> None:
     assert message.axes == [0.5] * 4
     assert read_message('{"type": "set", "speed": 0.5}') == Set(type="set", speed=0.5)
     assert read_message('{"type": "do", "action": "record"}') == Do(type="do", action="record")
+    talk = '{"type": "talk", "action": "read", "text": "take it", "choice": 3}'
+    assert read_message(talk) == Talk(type="talk", action="read", text="take it", choice=3)
 
 
 @pytest.mark.parametrize(
@@ -46,6 +48,15 @@ def test_messages_are_read() -> None:
 def test_a_wrong_value_is_named(change: dict[str, object], told: str) -> None:
     with pytest.raises(ProtocolError, match=told):
         read_message(json.dumps(INPUT | change))
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [({"action": "learn all"}, "action"), ({"choice": -1}, "choice"), ({"text": "a" * 501}, "text")],
+)
+def test_wrong_talk_is_named(change: dict[str, object], told: str) -> None:
+    with pytest.raises(ProtocolError, match=told):
+        read_message(json.dumps({"type": "talk", "action": "do", "text": "take it"} | change))
 
 
 @given(st.text() | st.binary() | st.recursive(st.none() | st.floats() | st.text(), st.lists).map(json.dumps))

@@ -10,6 +10,7 @@ import numpy as np
 from executor.collection import VARIETY, BoardCollection
 from executor.execution.evaluation.release_cases import SplitRelease
 from executor.files import new_folder, written_whole
+from executor.knowledge_fit import check_fit
 from executor.release_student import study_release
 from executor.showcase import show_and_learn
 from learning import Knowledge, Learner
@@ -54,7 +55,6 @@ def from_collection(
 
         files = [home / name / one.path.name for one in lessons.recorded]
         sentences = sorted({each for file in files for each in open_demo(file).utterances})
-        lessons.knowledge.rehear()
         lessons.knowledge.save(path)
         with written_whole(said) as partial:
             partial.write_text(json.dumps(sentences), encoding="utf-8")
@@ -75,13 +75,14 @@ def from_release(split: SplitRelease, folder: Path | None, seed: int) -> Learned
     return Learned(path, frozenset(words_of(command.sentence) for command in commands))
 
 
-def given(path: Path) -> Learned:
-    """Knowledge that someone brings.
+def given(path: Path, kind: str) -> Learned:
+    """Knowledge that someone brings, for scenes of a kind, `board` or `table`.
 
     Raises:
         KnowledgeError: It is none.
+        InputError: It was learned on another kind of scene.
     """
-    Knowledge.load(path)
+    check_fit(Knowledge.load(path), kind, path)
     return Learned(path)
 
 
