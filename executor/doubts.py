@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from learning.concept_id import ACTION_SPACE, OBJECT_SPACES, Concept
-from learning.grammar.innate import CENTRE, COLLECTIVE, CORNER, EDGE, IT
+from learning.grammar.innate import CENTRE, COLLECTIVE, CORNER, EDGE, EXTREMES, FURTHEST, IT, SIDES
 
 if TYPE_CHECKING:
     from learning import Interpretation, Knowledge
@@ -88,18 +88,32 @@ def far_fetched(words: Sequence[str], tree: "RclNode | None", knowledge: "Knowle
     for node in tree.nodes() if tree else ():
         if node.concept is not None:
             said = words[node.first - 1 : node.last]
-            if max(_share(name, node.concept, knowledge) for name in (*said, " ".join(said))) < FAR_FETCHED:
+            names = (*said, " ".join(said))
+            if max(_share(name, each, knowledge) for name in names for each in _made_of(node.concept)) < FAR_FETCHED:
                 found.append(" ".join(said))
     return tuple(found)
 
 
+def _made_of(concept: Concept) -> tuple[Concept, ...]:
+    """What the words for a concept may mean on their own: "left most" is a side and "furthest"."""
+    if concept not in EXTREMES:
+        return (concept,)
+    return (concept, FURTHEST, SIDES[EXTREMES.index(concept)])
+
+
 def _share(word: str, concept: Concept, knowledge: "Knowledge") -> float:
-    """Share of the uses of a word in which it meant a concept; 1 where it was not used often."""
+    """Share of the uses of a word in which it meant a concept; 1 where it was not used often.
+
+    Of a word that is mostly passed over ("to") only the uses count in which it meant anything, if there are enough.
+    """
     row = _uses(word, knowledge)
     total = sum(row.values())
     if " " in word and not row:
         return 0.0  # no word of its own, only some in a row
-    return row.get(concept, 0.0) / total if total >= OFTEN else 1.0
+    if total < OFTEN:
+        return 1.0
+    meant = total - row.get(None, 0.0)
+    return row.get(concept, 0.0) / (meant if meant >= OFTEN else total)
 
 
 def _uses(word: str, knowledge: "Knowledge") -> Mapping[Concept | None, float]:
