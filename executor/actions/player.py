@@ -8,7 +8,7 @@ import numpy as np
 
 from executor.actions.action_plan import ActionPlan, plan_action
 from executor.actions.hand import ActingHand
-from executor.actions.primitives import Close, Lift, Lower, Primitive, Release, Retreat
+from executor.actions.primitives import Close, Lift, Lower, Primitive, Reach, Release, Retreat, Touch
 from executor.actions.quantities import Quantities
 from executor.actions.reaching import reaches
 from executor.actions.rolling import roll_nearer
@@ -111,7 +111,8 @@ class ActionPlayer:
                     self.grasps = ()
                     can = hand.foresee(plan)
                     if not can.success:
-                        failed.append(Played(False, can.reason, arm=arm))
+                        first = next(step for step in (*plan.before, *plan.steps) if isinstance(step, Reach | Touch))
+                        failed.append(Played(False, can.reason, _name(first), arm))
                         continue
                     played = self._with(hand, plan, on_start)
                     self.grasps = hand.grasps
@@ -145,9 +146,13 @@ class ActionPlayer:
                 self._on_primitive(step)
                 yield step, hand.do(step)
 
+        before: tuple[Primitive, ...] = ()
         steps = plan.steps
         if hand.take_over():
-            before, steps = ((), steps) if plan.starts_held else _from_the_hand(steps, in_air=hand.in_air)
+            if plan.starts_held:  # it may have been grasped and not been lifted
+                before = () if hand.in_air else tuple(step for step in plan.before if isinstance(step, Lift))
+            else:
+                before, steps = _from_the_hand(steps, in_air=hand.in_air)
         else:
             before = plan.before
         for step, outcome in done(before):

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from learning import Knowledge
     from learning.graphs import ActionGraphlet
 
+AMPLE, CROWDED = 0.05, 5.0
+"""A thing that is put aside has so much room about it [m], or what is missing costs so many times as much way."""
 NOWHERE = 9.0
 """Where a thing is imagined that is put aside [m]: far from every table."""
 
@@ -42,7 +44,7 @@ def in_the_way(
 
 
 def places_aside(index: int, moved: int, kept_free: Spot, things: TableThings, knowledge: "Knowledge") -> list[Spot]:
-    """Free places for a thing that is put aside, the nearest first.
+    """Free places for a thing that is put aside, the nearest of those with much room first.
 
     Args:
         index: Index of the thing.
@@ -57,8 +59,14 @@ def places_aside(index: int, moved: int, kept_free: Spot, things: TableThings, k
     found = spots_for(
         anywhere, index, TableThings(location, extent), knowledge.spaces, knowledge.table_language.resting
     )
-    here = things.location[index, :2]
-    return sorted(found, key=lambda spot: float(np.linalg.norm(spot.position[:2] - here)))
+    here, others = things.location[index, :2], np.arange(len(location)) != index
+    taken = TableThings(location[others], extent[others])
+
+    def cost(spot: Spot) -> float:
+        away = np.linalg.norm(taken.location[:, :2] - spot.position[:2], axis=1) - taken.radius - things.radius[index]
+        return float(np.linalg.norm(spot.position[:2] - here)) + CROWDED * max(0.0, AMPLE - float(away.min()))
+
+    return sorted(found, key=cost)
 
 
 def carrying_action(knowledge: "Knowledge") -> "tuple[int, ActionGraphlet]":

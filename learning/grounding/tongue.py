@@ -323,7 +323,12 @@ class Tongue:
                 continue
             known = self._readings(ngram)
             lent = self._hypotheses.get(ngram, {}) if scene is not None else {}
-            concepts = {concept for concept, count in known.items() if concept is not None and count >= LEAST_USE}
+            concepts = {
+                concept
+                for concept, count in known.items()
+                if concept is not None
+                and count >= (LEAST_USE if scene is not None else self._least_use(ngram, concept))
+            }
             concepts |= set(lent)
             if scene is not None:
                 # A new word may say what was done, what the thing is like or where, as grammar expects there (7.3.3).
@@ -369,7 +374,7 @@ class Tongue:
         matrix = self.correlation
         if concept in UNMEASURED:
             return max(self._hypotheses.get(ngram, {}).values(), default=0.0) < MEASURED
-        if concept == OVER and self._mostly_passed(ngram):
+        if concept == OVER and self._mostly_passed(ngram) and not self._everywhere(ngram):
             return True  # "in" is heard with corners and fronts, too: only readings tell where it says more than they
         heard, every = matrix.ngram_counts.get(ngram, 0.0), _any_like(concept)
         usual = self._usual(concept)
@@ -385,6 +390,19 @@ class Tongue:
             return share >= LEAST_ACTION
         sure = wilson(row.get(concept, 0.0), row.get(every, 0.0), self._by_chance(every)) > usual
         return sure and share >= max(LEAST_TRUE, LEAST_LIFT * usual)
+
+    def _everywhere(self, ngram: str) -> bool:
+        """Whether an n-gram is said in nearly all sentences, so that it tells nothing."""
+        matrix = self.correlation
+        heard = matrix.ngram_counts.get(ngram, 0.0)
+        return matrix.demos > FIRST_SENTENCES and heard > matrix.row_demos(ngram) / LEAST_LIFT
+
+    def _least_use(self, ngram: str, concept: Concept) -> float:
+        """Readings that a meaning needs to be tried where nothing shows whether it is right.
+
+        An odd sentence may have made "the" say a relation once, as another word was misspelt; that is no meaning of it.
+        """
+        return SURELY if concept == OVER and self._mostly_passed(ngram) else LEAST_USE
 
     def _mostly_passed(self, ngram: str) -> bool:
         """Whether an n-gram was passed over in most of its uses, so that K tells of its neighbours more than of it."""

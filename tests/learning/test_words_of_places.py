@@ -16,7 +16,7 @@ from tests.learning.table_talk import COLOURS, SHAPES, table_talk
 def tongue() -> Tongue:
     """A language in which "in" is said of corners and of fronts, and by one of two people of what goes into a thing."""
     learned = Tongue()
-    for said, record, scene, _ in table_talk(np.random.default_rng(5), 60, "en", people=2, inside=0.35):
+    for said, record, scene, _ in table_talk(np.random.default_rng(5), 110, "en", people=2, inside=0.5):
         learned.learn(said, record, scene)
     learned.settle()
     return learned
@@ -38,6 +38,13 @@ def test_a_word_that_is_mostly_passed_over_says_the_relation_that_it_is_read_as(
 def test_that_word_says_nothing_where_it_belongs_to_others(tongue: Tongue) -> None:
     assert OVER not in where(tongue, "put the red apple in the top left corner")
     assert OVER not in where(tongue, "put the red apple in front of the blue bowl")
+
+
+def test_what_a_function_word_was_read_as_once_is_no_meaning_of_it(tongue: Tongue) -> None:
+    odd = Tongue.from_json(tongue.to_json())
+    odd.grounding.add("of", OVER, 1.0)
+    odd.grammar.add_terminal(OVER.space, "of", 1.0)
+    assert OVER not in where(odd, "put the red apple of the bowl")
 
 
 def test_a_word_that_was_never_read_as_a_relation_is_none(tongue: Tongue) -> None:
