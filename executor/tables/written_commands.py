@@ -11,8 +11,8 @@ from executor.actions.things import pose_of
 from executor.actions.witness import WitnessedWorld
 from executor.collections.performance import PlannedDemo
 from executor.collections.table_goals import Goal, put_rule
-from executor.errors import InputError
 from executor.execution.answer import Answer
+from executor.execution.evaluation.written_lines import read_lines
 from executor.follow import wait
 from executor.tables.commands import LOOKS, SETTLE, Judge, TableCommand, by_rule
 from executor.tables.suite_commands import answered_unmoved
@@ -42,23 +42,12 @@ def written_commands(robot: str, path: Path) -> list[TableCommand]:
     Raises:
         InputError: The file cannot be read or a line has another form; names it.
     """
-    commands = []
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-    for row, line in enumerate(lines, start=1):
-        if not line.strip() or line.startswith("#"):
-            continue
-        fields = [field.strip() for field in line.split("\t")]
-        try:
-            scene, sentence = resolve_scene(SCENES[robot], int(fields[0])), fields[1]
-            commands.append(_command(scene, sentence, [field for field in fields[2:] if field]))
-        except (ValueError, IndexError, StopIteration):
-            raise InputError(f"{path}, line {row}: {line!r} is not {FORM}") from None
-    if not commands:
-        raise InputError(f"{path}: holds no command")
-    return commands
+
+    def made(_: int, fields: list[str]) -> TableCommand:
+        scene = resolve_scene(SCENES[robot], int(fields[0]))
+        return _command(scene, fields[1], [field for field in fields[2:] if field])
+
+    return read_lines(path, made, FORM)
 
 
 def _command(scene: SceneSpec, sentence: str, fields: list[str]) -> TableCommand:

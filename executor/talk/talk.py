@@ -10,6 +10,7 @@ from executor.errors import InputError
 from executor.execution.answer import Answer
 from executor.execution.session import Session
 from executor.executor import Executor
+from executor.knowledge_fit import check_fit
 from executor.report import ExecutionReport, told
 from executor.talk.marks import Mark, marks_of
 from executor.talk.plan_words import line_of, plan_lines
@@ -18,14 +19,12 @@ from executor.talk.state import Answered, Lesson, TalkState
 from executor.talk.student import Student
 from executor.talk.told_knowledge import told_knowledge
 from learning import Knowledge
-from learning.concepts.space_set import BOARD
 from teleop.errors import TeleopError
 from teleop.loop_channel import ChannelClosedError
 from teleop.loop_extension import LentStopError
 
 if TYPE_CHECKING:
     from teleop.loop_extension import Desk
-    from twin import World
 
 LISTEN_EVERY = 12
 """Control steps between two looks at what the student has to say: 20 Hz."""
@@ -257,7 +256,7 @@ class Talk:
         world = self._desk.deck.world
         if self._knowledge is None or not self._knowledge.demos or self._desk.deck.mode == "replaying":
             return None
-        check_fit(self._knowledge, world, self._path)
+        check_fit(self._knowledge, world.spec.kind, self._path)
         return Executor(world, self._knowledge)
 
     def _show(self, **changes: Any) -> None:
@@ -267,18 +266,6 @@ class Talk:
     def _tell_now(self) -> None:
         """Tell at once, where the loop itself comes to it late."""
         self._untold = not self._desk.tell("T", self.state.to_dict())
-
-
-def check_fit(knowledge: Knowledge, world: "World", path: Path) -> None:
-    """See that knowledge was made where a robot works now.
-
-    Raises:
-        InputError: It was not; says what to do.
-    """
-    made_on_board = knowledge.spaces.space_set.name == BOARD.name
-    if made_on_board != (world.spec.kind == "board"):
-        made, here = ("the board", "a table") if made_on_board else ("tables", "the board")
-        raise InputError(f"{path} was learned on {made}, but this scene is {here}: give another file with --knowledge")
 
 
 def make_talk(desk: "Desk", options: Mapping[str, str]) -> Talk:

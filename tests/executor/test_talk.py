@@ -12,13 +12,13 @@ import pytest
 from executor import Executor
 from executor.errors import InputError
 from executor.execution.answer import Answer
+from executor.knowledge_fit import check_fit
 from executor.talk.lexicon import entry_of, lexicon
 from executor.talk.marks import marks_of
 from executor.talk.plan_words import line_of, plan_lines
 from executor.talk.said_words import words_of_report
 from executor.talk.serving import talk_files
 from executor.talk.student import Student, learn_demo
-from executor.talk.talk import check_fit
 from executor.talk.told_knowledge import told_knowledge
 from executor.talk.word_kinds import WordKind, kind_of
 from learning import Knowledge
@@ -192,7 +192,7 @@ def test_knowledge_of_tables_is_refused_on_the_board(scene: Path, tmp_path: Path
         World.from_scene(scene) as world,
         pytest.raises(InputError, match="learned on tables, but this scene is the b"),
     ):
-        check_fit(Knowledge("table"), world, tmp_path / "k.json")
+        check_fit(Knowledge("table"), world.spec.kind, tmp_path / "k.json")
 
 
 def _wait_for(student: Student, seconds: float = 60.0) -> dict[str, object]:

@@ -9,6 +9,7 @@ import numpy as np
 from executor.errors import InputError
 from executor.execution.answer import Answer
 from executor.execution.evaluation.case import Case, Cell, Expected
+from executor.execution.evaluation.written_lines import read_lines
 from learning.grounding.ngrams import words_of
 from twin import random_board
 from twin.board import nearest_cell
@@ -56,27 +57,15 @@ def written_cases(path: Path) -> list[Case]:
     Raises:
         InputError: A line has another form; names it.
     """
-    cases = []
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-    for row, line in enumerate(lines, start=1):
-        if not line.strip() or line.startswith("#"):
-            continue
-        fields = [field.strip() for field in line.split("\t")]
-        try:
-            seed, sentence = int(fields[0]), fields[1]
-            expected = _expected(fields[2:])
-        except (ValueError, IndexError):
-            raise InputError(
-                f"{path}, line {row}: {line!r} is not a seed, a sentence and what should come of it, with tabs between "
-                "them: an answer, or an object and `held` or a cell x,y,z"
-            ) from None
-        cases.append(Case(row, resolve_scene("board", seed), sentence, expected, "written"))
-    if not cases:
-        raise InputError(f"{path}: holds no command")
-    return cases
+
+    def made(row: int, fields: list[str]) -> Case:
+        return Case(row, resolve_scene("board", int(fields[0])), fields[1], _expected(fields[2:]), "written")
+
+    form = (
+        "a seed, a sentence and what should come of it, with tabs between them: an answer, or an object and `held` or "
+        "a cell x,y,z"
+    )
+    return read_lines(path, made, form)
 
 
 def _expected(fields: list[str]) -> Expected | None:
