@@ -37,8 +37,9 @@ MOST_PAGES = 24
 """Pages that may be connected at once."""
 GIVEN_UP_AFTER = 2.0
 """A page that holds control and says nothing for this long loses it [s]."""
-START_TIMEOUT = 60.0
-"""How long the control loop may take to start [s]: a robot's meshes are decimated the first time."""
+START_TIMEOUT = 180.0
+"""How long the control loop may take to start [s]: the first time a robot's meshes are decimated and kernels
+compiled, on a busy machine perhaps beside other work."""
 END_TIMEOUT = 35.0
 """How long it may take to finish a recording [s]; a disk is waited for 30 s."""
 _BAD_DATA, _POLICY = 1007, 1008
