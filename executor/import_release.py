@@ -129,9 +129,7 @@ def import_release(
     started = time.perf_counter()
     if not 1 <= jobs <= MOST_JOBS:
         raise InputError(f"jobs is {jobs}, allowed 1..{MOST_JOBS}")
-    release = Release.load(release_dir)
-    if extend:
-        release = extended(release, np.random.default_rng(seed))
+    release = load_release(release_dir, extend, seed)
     scenes = _chosen(release, only)
     folder = Path(out_dir)
     try:
@@ -161,6 +159,21 @@ def import_release(
             advance(outcome)
     ordered = tuple(outcomes[number] for number in sorted(outcomes))
     return ImportReport(ordered, time.perf_counter() - started, jobs)
+
+
+def load_release(directory: str | Path, extend: bool, seed: int) -> Release:
+    """Read a release as an import drives it.
+
+    Args:
+        directory: Directory with `commands.txt` and `configuration.txt`.
+        extend: Whether the extended release is meant (thesis 6.2.1).
+        seed: Draws what is changed in that.
+
+    Raises:
+        ReleaseError: A file is missing or malformed.
+    """
+    release = Release.load(directory)
+    return extended(release, np.random.default_rng(seed)) if extend else release
 
 
 def demo_path(folder: str | Path, scene: int) -> Path:

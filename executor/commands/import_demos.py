@@ -43,8 +43,7 @@ def train_robots(
     import numpy as np
 
     from executor.compare_graphlets import compare_graphlets
-    from executor.import_release import import_release
-    from learning.train_robots import Release, extended
+    from executor.import_release import import_release, load_release
 
     out = Output(as_json)
     report = import_release(
@@ -65,10 +64,10 @@ def train_robots(
     kept = f", {report.kept} kept from an earlier run" if report.kept else ""
     speed = f"; one demo runs at {report.real_time_factor:.1f} x real time" if report.kept < total else ""
     out.say(f"{report.wall:.0f} s with {report.jobs} processes{kept}{speed}")
-    release = Release.load(directory)
-    if extend:
-        release = extended(release, np.random.default_rng(seed))
-    pairs = compare_graphlets(release, output, compare, np.random.default_rng(seed)) if compare else []
+    pairs = []
+    if compare:
+        release = load_release(directory, extend, seed)
+        pairs = compare_graphlets(release, output, compare, np.random.default_rng(seed))
     same = sum(pair.same for pair in pairs)
     if pairs:
         out.say(f"{same} of {len(pairs)} demos show the same action graphlet as the key frames of their layouts")

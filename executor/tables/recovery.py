@@ -23,7 +23,7 @@ TRIED = 6
 APART = 0.06
 """so far apart [m]."""
 SAME = 0.06
-"""What is seen so near to what is held is that thing [m]."""
+"""What is seen so near to where a thing is or should be is that thing [m]."""
 AT_HOME = 0.05
 """An arm so near to its home posture [rad] is there."""
 

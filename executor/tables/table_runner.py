@@ -14,7 +14,7 @@ from executor.execution.answer import Answer
 from executor.follow import wait
 from executor.report import Outcome, answer_of, joined
 from executor.tables.places import Spot
-from executor.tables.recovery import come_to_rest
+from executor.tables.recovery import SAME, come_to_rest
 from executor.tables.table_view import TableView, alike
 from learning.interpretation.interpretation import Goal
 from robots.pose import FloatArray
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from learning import Knowledge
     from twin import World
 
-SAME = 0.06
-"""What is seen so near to where a thing should be is that thing [m]."""
 REST = 0.7
 """Time [s] in which all comes to rest before the second look."""
 DISTURBED = 0.03

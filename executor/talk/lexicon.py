@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from executor.table_words import LEAST_SHARE
 from executor.talk.word_kinds import WordKind, kind_of
 from learning.concept_id import Concept
 from learning.grounding.reading_learner import ReadingLearner
@@ -14,8 +15,6 @@ if TYPE_CHECKING:
     from learning import Knowledge
 
 
-LEAST_SHARE = 0.2
-"""At tables a word means what it was read as in at least this share of its uses (as `executor.table_words` has it)."""
 SURE = 0.4
 """Least share of a word's main meaning from which on it counts as known."""
 
