@@ -15,7 +15,7 @@ Demos = Annotated[Path | None, typer.Argument(help="Folder of demos of a table w
 Release = Annotated[Path | None, typer.Option(help="Train-Robots release whose commands are looked at instead.")]
 Folds = Annotated[int, typer.Option(min=2, help="Learn and ask in this many folds.")]
 Cache = Annotated[Path | None, typer.Option(help="Folder that keeps the observations, as with `showtell perceive`.")]
-Jobs = Annotated[int, typer.Option(min=0, help="Processes that look at demos; 0 takes one a core.")]
+Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0 takes one a core.")]
 Shown = Annotated[int, typer.Option(min=0, help="How many failures of each cause to list.")]
 
 
@@ -57,7 +57,7 @@ def grounding(
     if train_robots is not None:
         from executor.commands.release_language import release_language
 
-        report = release_language(out, directory, folds=folds, seed=seed)
+        report = release_language(out, directory, folds=folds, seed=seed, jobs=jobs)
     else:
         from learning.evaluation.table_exam import grounding_exam
 
@@ -97,7 +97,7 @@ def grammar(
     if train_robots is not None:
         from executor.commands.release_language import release_language
 
-        report = release_language(out, directory, folds=folds, seed=seed)
+        report = release_language(out, directory, folds=folds, seed=seed, jobs=jobs)
     else:
         from learning.evaluation.table_exam import grammar_exam
 

@@ -1,5 +1,6 @@
 """Grounding and grammar of the board's commands, learned from the key frames of a release, over folds by group."""
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -8,7 +9,7 @@ if TYPE_CHECKING:
     from learning.evaluation.language_report import LanguageReport
 
 
-def release_language(out: "Output", directory: Path, *, folds: int, seed: int) -> "LanguageReport":
+def release_language(out: "Output", directory: Path, *, folds: int, seed: int, jobs: int = 0) -> "LanguageReport":
     """F1 of grounding against the annotation's token alignments, and the sub-tree score against its trees.
 
     Args:
@@ -16,6 +17,7 @@ def release_language(out: "Output", directory: Path, *, folds: int, seed: int) -
         directory: The release.
         folds: Number of folds, by group.
         seed: Seed of learning.
+        jobs: Processes; 0 takes one a core.
 
     Raises:
         ReleaseError: The release is malformed.
@@ -27,4 +29,11 @@ def release_language(out: "Output", directory: Path, *, folds: int, seed: int) -
 
     release = Release.load(directory)
     with out.progress(f"learning and asking {folds} folds", folds) as advance:
-        return board_exam(release, LearnRelease(seed), folds=folds, seed=seed, on_fold=advance)
+        return board_exam(
+            release,
+            LearnRelease(seed),
+            folds=folds,
+            seed=seed,
+            jobs=jobs or len(os.sched_getaffinity(0)),
+            on_fold=advance,
+        )

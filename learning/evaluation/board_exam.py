@@ -3,12 +3,15 @@
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from learning.errors import LearningError
 from learning.evaluation.annotation import annotations_of, tokens_of, word_tokens
-from learning.evaluation.answers import Answer, Learn, ask
+from learning.evaluation.answers import Answer, Learn
+from learning.evaluation.examination import examine_fold
+from learning.evaluation.fold_workers import in_folds
 from learning.evaluation.folds import Fold, make_folds
 from learning.evaluation.grammar_bounds import Chunker, bracket_f1, right_branching
 from learning.evaluation.language_pairs import SPACES, Pair, PairScore
@@ -46,6 +49,7 @@ def board_exam(
     *,
     folds: int = 4,
     seed: int = 0,
+    jobs: int = 1,
     on_fold: Callable[[], None] = lambda: None,
 ) -> LanguageReport:
     """Learn on all folds but one and ask that one; scores of grounding, of grammar and of their bounds.
@@ -55,6 +59,7 @@ def board_exam(
         learn: Makes a student from scenes and commands.
         folds: Number of folds, by group.
         seed: Seed of the report.
+        jobs: Processes; with more than one `learn` must be picklable.
         on_fold: Called after each fold.
 
     Raises:
@@ -64,8 +69,9 @@ def board_exam(
     if trees is None:
         raise LearningError(f"{release.directory}: without annotation.txt there is nothing to compare words with")
     scores = []
-    for fold in make_folds(release, folds, "groups", np.random.default_rng(seed)):
-        answers, names = ask(learn(fold.scenes, fold.learned), release.scenes, fold.asked)
+    parts = make_folds(release, folds, "groups", np.random.default_rng(seed))
+    for fold, examined in in_folds(partial(examine_fold, learn, release, False), parts, jobs):
+        answers, names = examined.answers, examined.names
         ours = {
             answer.command.id: public_tree(answer.tree, names, word_tokens(answer.command.sentence))
             for answer in answers

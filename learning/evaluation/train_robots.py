@@ -1,11 +1,9 @@
 """The Train-Robots examination: how many commands are understood rightly (design sections 4 and 6)."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -15,12 +13,12 @@ from learning.evaluation.answers import Learn, Student, ask
 from learning.evaluation.baselines import SETTINGS, baseline_credits
 from learning.evaluation.command_score import CommandScore, cause_of, score
 from learning.evaluation.examination import Examined, examine_fold
-from learning.evaluation.folds import Fold, Split, make_folds
+from learning.evaluation.fold_workers import in_folds
+from learning.evaluation.folds import Split, make_folds
 from learning.evaluation.kinds import kinds_of, outside_vocabulary
 from learning.evaluation.machine import machine
 from learning.evaluation.public_tree import PublicNode
 from learning.train_robots.release import Release
-from robots.workers import end_with_parent
 
 MILESTONES = (80, 90)
 """Execution accuracies [%] for which it is told after how many commands they are reached."""
@@ -149,7 +147,7 @@ def cross_validate(
     baselines: dict[str, list[float]] = {}
     examined: list[Examined] = []
     work = partial(examine_fold, learn, release, curve)
-    for done, (fold, result) in enumerate(_run(work, parts, jobs), start=1):
+    for done, (fold, result) in enumerate(in_folds(work, parts, jobs), start=1):
         examined.append(result)
         scores += _scored(release, result, annotations)
         for name, credit in baseline_credits(release.scenes, fold.learned, fold.asked).items():
@@ -185,17 +183,6 @@ def examine(
     examined = Examined(answers, names)
     report = _report(release, _scored(release, examined, annotations), annotations, credit, seed, settings)
     return replace(report, costs=_costs([examined]))
-
-
-def _run(work: Callable[[Fold], Examined], folds: Sequence[Fold], jobs: int) -> Iterator[tuple[Fold, Examined]]:
-    if jobs <= 1:
-        for fold in folds:
-            yield fold, work(fold)
-        return
-    context = get_context("spawn")
-    with ProcessPoolExecutor(min(jobs, len(folds)), mp_context=context, initializer=end_with_parent) as pool:
-        # In the order of the folds, so that one process or many add up to the same last digit.
-        yield from zip(folds, pool.map(work, folds), strict=True)
 
 
 def _scored(release: Release, examined: Examined, annotations: Mapping[int, PublicNode] | None) -> list[CommandScore]:

@@ -13,6 +13,7 @@ from learning.errors import LearningError
 from learning.evaluation import TrainRobotsReport, cross_validate, examine, make_folds
 from learning.evaluation.answers import Answer
 from learning.evaluation.baselines import Outcome, baseline_credits, possible_outcomes
+from learning.evaluation.board_exam import board_exam
 from learning.evaluation.command_score import fault
 from learning.evaluation.concept_names import ConceptTally, true_distance, true_place, true_relation
 from learning.grammar.rcl import RclNode
@@ -186,6 +187,18 @@ def test_several_processes_give_the_same_report(release: Release, report: TrainR
     again = cross_validate(release, partial(cram, release.scenes, 24), folds=3, seed=5, jobs=2)
     assert again.figures() == report.figures()
     assert again.failures() == report.failures()
+
+
+def test_words_and_trees_are_scored_alike_in_one_process_or_many(release: Release) -> None:
+    alone, many = (
+        board_exam(release, partial(cram, release.scenes, 24), folds=2, seed=5, jobs=jobs) for jobs in (1, 2)
+    )
+    assert alone.figures() == many.figures()
+    assert alone.failures() == many.failures()
+    told_all = board_exam(release, partial(cram, release.scenes, 48), folds=2, seed=5).figures()
+    less, more = alone.figures()["subtree_score"], told_all["subtree_score"]
+    assert less is not None and more is not None and 0 < less < more
+    assert alone.baselines() == many.baselines()
 
 
 BEFORE = Layout(
