@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any
 
-from learning.grammar.innate import ABOVE, EXTREMES, FURTHEST, NEAREST_ONE, SIDES
+from learning.grammar.innate import ABOVE, BESIDE, EXTREMES, FURTHEST, NEAREST_ONE, SIDES
 from learning.grammar.phrase import Feature
 from learning.saved_numbers import saved_count, saved_number
 
@@ -43,6 +43,8 @@ PRIORS: dict[Feature, float] = {
     ("used", "relation", "word"): -1.0,
     # One word names an action more often than several do.
     ("joined", "action"): -1.0,
+    # What is beside a thing is nearest to it too, but that says less.
+    ("relation", str(BESIDE), "thing"): 0.5,
     # What is in a place is on its ground too, but that says less.
     ("relation", str(ABOVE), "place"): -1.0,
     # What is to one side of a place is off the board, or is part of it and called so.

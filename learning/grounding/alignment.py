@@ -3,7 +3,7 @@
 Every word of a sentence is taken to be said of one salient concept, or of none. Expected counts are added as sentences
 come (incremental EM, Neal & Hinton 1998; Model 1 of Brown et al. 1993); a sentence that is looked at again replaces
 what it had added. Rare concepts are smoothed towards how frequent words are, so that whatever stood beside one of them
-by chance is not taken for its name.
+by chance is not taken for its name. What a sentence owes is looked at after that (`owed`).
 """
 
 import math
@@ -12,7 +12,11 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from learning.concept_id import Concept
+from learning.grounding.owed import MOST_ODDS, is_in_ways, log_odds_told, log_untold, with_owed
 from learning.grounding.shares import shares_of
 from learning.saved_numbers import saved_count
 
@@ -20,6 +24,8 @@ NOTHING = 1.5
 """How much likelier than any one salient concept a word is to be said of none."""
 SMOOTHING = 15.0
 """Words that every concept is taken to have been named with before anything was heard, spread as words are."""
+ENOUGH = 256
+"""Sentences that are heard before it is looked at what they owe: until then all words are rare."""
 KEPT = 0.05
 """Smallest count that is saved."""
 
@@ -39,6 +45,18 @@ Shares = tuple[tuple[float, ...], ...]
 """For each word, the probability that it was said of each meaning: of none, then of the salient concepts."""
 
 
+class Observed(NamedTuple):
+    """What a sentence added: what it may be about, and the probability of each word to be said of each of these."""
+
+    salient: tuple[Concept, ...]
+    shares: Shares
+
+    @property
+    def meanings(self) -> tuple[Meaning, ...]:
+        """None, then what is salient."""
+        return None, *self.salient
+
+
 class Alignment:
     """Expected counts of words with concepts."""
 
@@ -47,6 +65,8 @@ class Alignment:
         self.word_counts: defaultdict[str, float] = defaultdict(float)
         self.joint: defaultdict[str, defaultdict[Meaning, float]] = defaultdict(lambda: defaultdict(float))
         self.totals: defaultdict[Meaning, float] = defaultdict(float)
+        self.salient: defaultdict[Concept, float] = defaultdict(float)
+        self.told: defaultdict[Concept, float] = defaultdict(float)
         self.heard = 0.0
         self.sentences = 0
 
@@ -54,9 +74,10 @@ class Alignment:
         self,
         words: Sequence[str],
         salient: Sequence[Concept],
-        earlier: Shares | None = None,
+        earlier: Observed | None = None,
         ways: Sequence[Way] = (Way(),),
-    ) -> Shares:
+        told: frozenset[Concept] = frozenset(),
+    ) -> Observed:
         """Count one sentence.
 
         Args:
@@ -64,6 +85,7 @@ class Alignment:
             salient: What it may be about, in a fixed order.
             earlier: What this sentence had added when it was looked at last.
             ways: Ways of speaking of it. How likely each is follows from all words of the sentence together.
+            told: What of the salient is told for certain, by some word.
 
         Returns:
             What it adds now.
@@ -75,7 +97,7 @@ class Alignment:
             self.heard += len(words)
             self.sentences += 1
         else:
-            self._add(words, meanings, earlier, -1.0)
+            self._add(words, earlier, -1.0)
         rows = []
         for word in words:
             row = self.joint[word]
@@ -85,21 +107,55 @@ class Alignment:
             rows.append(likely)
         spread = [_spread(rows, meanings, way) for way in ways]
         odds = shares_of([score for score, _ in spread])
-        shares = [
-            tuple(sum(map(operator.mul, odds, column)) for column in zip(*of_word, strict=True))
-            for of_word in zip(*(table for _, table in spread), strict=True)
-        ]
-        self._add(words, meanings, shares, 1.0)
-        return tuple(shares)
+        shares = np.array(
+            [
+                [sum(map(operator.mul, odds, column)) for column in zip(*of_word, strict=True)]
+                for of_word in zip(*(table for _, table in spread), strict=True)
+            ]
+        )
+        if words and self.sentences >= ENOUGH:
+            owed = [MOST_ODDS if each in told and not is_in_ways(each) else self._log_odds(each) for each in salient]
+            heard = np.array([self.word_counts[word] for word in words])
+            untold = log_untold(words, shares, _in_ways(meanings))[1]
+            shares = with_owed(shares, untold, np.array([0.0, *owed]), heard)
+        observed = Observed(tuple(salient), tuple(map(tuple, shares.tolist())))
+        self._add(words, observed, 1.0)
+        return observed
 
-    def _add(
-        self, words: Sequence[str], meanings: Sequence[Meaning], shares: Sequence[Sequence[float]], sign: float
-    ) -> None:
-        for word, row_shares in zip(words, shares, strict=True):
+    def level(self, words: Sequence[str], earlier: Observed, most: float) -> Observed:
+        """Take back what was made of the rare words of a sentence: they may be said of anything again.
+
+        Online estimates of a rare word rest on what little was known when it was heard.
+
+        Args:
+            words: The sentence.
+            earlier: What it had added.
+            most: How often a rare word was heard at most.
+
+        Returns:
+            What it adds now.
+        """
+        self._add(words, earlier, -1.0)
+        flat = (1.0 / len(earlier.meanings),) * len(earlier.meanings)
+        pairs = zip(words, earlier.shares, strict=True)
+        level = earlier._replace(shares=tuple(flat if self.word_counts[word] <= most else row for word, row in pairs))
+        self._add(words, level, 1.0)
+        return level
+
+    def _log_odds(self, concept: Concept) -> float:
+        return log_odds_told(concept, self.salient.get(concept, 0.0), self.told.get(concept, 0.0))
+
+    def _add(self, words: Sequence[str], observed: Observed, sign: float) -> None:
+        for word, row_shares in zip(words, observed.shares, strict=True):
             row = self.joint[word]
-            for meaning, share in zip(meanings, row_shares, strict=True):
+            for meaning, share in zip(observed.meanings, row_shares, strict=True):
                 row[meaning] = max(0.0, row[meaning] + sign * share)
                 self.totals[meaning] = max(0.0, self.totals[meaning] + sign * share)
+        if words:
+            told = -np.expm1(log_untold(words, np.array(observed.shares), _in_ways(observed.meanings))[0])
+            for concept, share in zip(observed.salient, told[1:].tolist(), strict=True):
+                self.salient[concept] += sign
+                self.told[concept] = max(0.0, self.told[concept] + sign * share)
 
     def meanings(self, word: str) -> dict[Meaning, float]:
         """P(concept | word), with one count of doubt; empty for a word never heard."""
@@ -113,6 +169,8 @@ class Alignment:
         if old not in self.totals:
             return
         self.totals[new] += self.totals.pop(old)
+        for table in (self.salient, self.told):
+            table[new] += table.pop(old, 0.0)
         for row in self.joint.values():
             if old in row:
                 row[new] += row.pop(old)
@@ -124,10 +182,26 @@ class Alignment:
             for word, count in sorted(self.word_counts.items())
         }
 
+    def told_to_json(self) -> dict[str, list[float]]:
+        """Concept to the number of sentences in which it was salient, and in which it was told."""
+        return {
+            str(concept): [round(salient), round(self.told.get(concept, 0.0), 2)]
+            for concept, salient in sorted(self.salient.items())
+            if salient >= 0.5
+        }
+
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> "Alignment":
-        """Rebuild; raises TypeError, ValueError or AttributeError for what `to_json` did not write."""
+    def from_json(cls, data: Mapping[str, Any], told: Mapping[str, Any] | None = None) -> "Alignment":
+        """Rebuild; raises TypeError, ValueError or AttributeError for what `to_json` did not write.
+
+        Args:
+            data: From `to_json`.
+            told: From `told_to_json`; files written before it was counted have none.
+        """
         alignment = cls()
+        for name, (salient, how_often) in (told or {}).items():
+            alignment.salient[Concept.parse(name)] = saved_count(salient, f"sentences with {name} salient")
+            alignment.told[Concept.parse(name)] = saved_count(how_often, f"sentences that tell {name}")
         for word, (count, row) in data.items():
             alignment.word_counts[word] = saved_count(count, f"count of '{word}'", least=1)
             alignment.heard += alignment.word_counts[word]
@@ -158,6 +232,10 @@ def _spread(rows: Sequence[Sequence[float]], meanings: Sequence[Meaning], way: W
         if each in way.told:
             score += math.log(max(LEAST_TOLD, 1.0 - math.prod(1.0 - row[index] for row in table)))
     return score, table
+
+
+def _in_ways(meanings: Sequence[Meaning]) -> npt.NDArray[np.bool_]:
+    return np.array([is_in_ways(each) for each in meanings])
 
 
 def name_of(meaning: Meaning) -> str:

@@ -1,16 +1,20 @@
 """A bounded memory of recent sentences with what was shown, for looking at them again (design section 5)."""
 
+from collections import defaultdict
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from learning.concept_id import Concept
 from learning.grammar.arrangement import Arrangement
-from learning.grounding.alignment import Shares
+from learning.grounding.alignment import Observed
 from learning.percept import ShownAction
 
 LARGEST = 1024
 """Most pairs kept. The oldest are forgotten first; none is saved with the knowledge."""
+
+CERTAIN = 0.5
+"""What readings of a larger share say is taken to be told."""
 
 
 @dataclass(slots=True)
@@ -22,7 +26,7 @@ class Episode:
         arrangement: The scene before the action.
         shown: The action.
         salient: What was salient in it.
-        shares: What the sentence added to the alignment when it was looked at last.
+        observed: What the sentence added to the alignment when it was looked at last.
         grounded: What it added to Φ when it was read last: word, meaning, amount.
         counted: Whether its rules were counted.
     """
@@ -31,9 +35,17 @@ class Episode:
     arrangement: Arrangement
     shown: ShownAction
     salient: tuple[Concept, ...]
-    shares: Shares
+    observed: Observed
     grounded: tuple[tuple[str, Concept | None, float], ...] = ()
     counted: bool = False
+
+    def told(self) -> frozenset[Concept]:
+        """What the readings that did what was shown say for certain, in some words of the sentence."""
+        amounts: defaultdict[Concept, float] = defaultdict(float)
+        for _, concept, amount in self.grounded:
+            if concept is not None:
+                amounts[concept] += amount
+        return frozenset(concept for concept, amount in amounts.items() if amount > CERTAIN)
 
 
 class Memory:
@@ -68,6 +80,8 @@ class Memory:
         for episode in self.episodes:
             episode.arrangement = episode.arrangement.renamed(old, new)
             episode.salient = tuple(new if concept == old else concept for concept in episode.salient)
+            salient = tuple(new if concept == old else concept for concept in episode.observed.salient)
+            episode.observed = episode.observed._replace(salient=salient)
             episode.grounded = tuple((word, new if c == old else c, n) for word, c, n in episode.grounded)
             if old.space == "action" and old.number in (shown := episode.shown).parts:
                 parts = tuple(dict.fromkeys(new.number if part == old.number else part for part in shown.parts))

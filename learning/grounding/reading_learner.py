@@ -28,7 +28,7 @@ from learning.grammar.phrase_chart import PhraseChart
 from learning.grammar.rcl import RclNode
 from learning.grammar.reading_tree import tree_of
 from learning.grammar.weights import Weights
-from learning.grounding.alignment import Alignment, Meaning
+from learning.grounding.alignment import ENOUGH, Alignment, Meaning
 from learning.grounding.attention import salient_meanings, ways_of_speaking
 from learning.grounding.collocations import Collocations
 from learning.grounding.grounding import Grounding
@@ -51,8 +51,10 @@ LISTENING = 32
 FRESH_STARTS = (LISTENING, 128, 512, LARGEST)
 """Numbers of sentences at which all that reading had taught is forgotten and the memory is read afresh: what was read
 while words could mean nearly anything would mislead for ever."""
-SWEEPS = 4
+SWEEPS = 6
 """How often the memory is aligned again before it is read afresh."""
+SELDOM = 60.0
+"""Words heard so often at most are aligned from nothing before the memory is read afresh."""
 Grounded = tuple[tuple[str, Concept | None, float], ...]
 LEAST_SHARE = 0.02
 """Readings whose share of the credit is smaller are not counted."""
@@ -193,6 +195,9 @@ class ReadingLearner:
     def _start_over(self, actions: ActionTable, bearing: frozenset[int], rng: np.random.Generator) -> None:
         """Read the whole memory afresh, by what alignment has come to know."""
         episodes = self.memory.episodes
+        if self.sentences >= ENOUGH:
+            for episode in episodes:
+                episode.observed = self.alignment.level(episode.words, episode.observed, SELDOM)
         for _ in range(SWEEPS):
             for episode in episodes:
                 self._align(episode, actions)
@@ -207,9 +212,11 @@ class ReadingLearner:
             self._credit(episode, BoardElements(episode.arrangement, bearing), actions)
 
     def _align(self, episode: Episode, actions: ActionTable) -> None:
-        """Align an earlier sentence anew."""
+        """Align an earlier sentence anew: with what was salient, and with what it turned out to say."""
         ways = ways_of_speaking(episode.shown, actions)
-        episode.shares = self.alignment.observe(episode.words, episode.salient, episode.shares, ways)
+        told = episode.told() if self.sentences >= ENOUGH else frozenset()
+        salient = tuple(sorted(told.union(episode.salient)))
+        episode.observed = self.alignment.observe(episode.words, salient, episode.observed, ways, told)
 
     def _credit(self, episode: Episode, scene: BoardElements, actions: ActionTable) -> bool:
         words, shown = episode.words, episode.shown
@@ -278,6 +285,7 @@ class ReadingLearner:
             "method": self.method,
             "sentences": self.sentences,
             "alignment": self.alignment.to_json(),
+            "told": self.alignment.told_to_json(),
             "grounding": self.grounding.to_json(),
             "grammar": self.grammar.to_json(),
             "weights": self.weights.to_json(),
@@ -289,7 +297,7 @@ class ReadingLearner:
         """Rebuild; raises KeyError, TypeError, ValueError or AttributeError for what `to_json` did not write."""
         learner = cls()
         learner.sentences = int(saved_count(data["sentences"], "number of sentences"))
-        learner.alignment = Alignment.from_json(data["alignment"])
+        learner.alignment = Alignment.from_json(data["alignment"], data.get("told"))
         learner.alignment.sentences = learner.sentences
         learner.grounding = Grounding.from_json(data["grounding"])
         learner.grammar = Pcfg.from_json(data["grammar"])

@@ -14,6 +14,7 @@ from learning.grammar.innate import (
     FURTHEST,
     GROUP,
     IT,
+    NEAREST,
     ONE,
     REGION,
     SIDES,
@@ -57,7 +58,7 @@ IT_SHARE = 3.0
 PLAIN = 0.5
 """A word that means something with this probability needs no such kind."""
 RARE = 30.0
-"""A word heard less often than this may be an action that is seldom called so."""
+"""A word heard less often than this may be an action that is seldom called so, or a narrower relation."""
 ACTING = 0.1
 """A word that means some action with this probability may mean any."""
 UNMEASURED_PROBABILITY = 0.02
@@ -179,6 +180,10 @@ class UseTable:
             if least <= count <= most and not kin and not plain:
                 probability = UNMEASURED_PROBABILITY * (IT_SHARE if meaning == IT else 1.0)
                 chosen[meaning] = max(chosen.get(meaning, 0.0), probability)
+        near = chosen.get(NEAREST, 0.0)
+        if near > ACTING and count <= RARE:
+            # What is beside a thing is nearest to it, too: only all uses together tell "next to" from "closest to".
+            chosen[BESIDE] = max(chosen.get(BESIDE, 0.0), 0.5 * near)
         extreme = sum(means.get(each, 0.0) for each in EXTREMES)
         if extreme > LEAST_PROBABILITY:
             # Said of what is furthest to some side: beside a word for that side it means no more than "furthest".

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from learning.concept_id import Concept
-from learning.grounding.alignment import Alignment, Way
+from learning.grounding.alignment import Alignment, Observed, Way
 
 COLOURS = {name: Concept("colour", number) for number, name in enumerate(("rosso", "blu", "verde"))}
 SHAPES = {name: Concept("shape", number) for number, name in enumerate(("cubo", "prisma"))}
@@ -37,9 +37,9 @@ def test_what_was_never_heard_means_nothing() -> None:
 def test_looking_again_replaces_what_was_counted() -> None:
     alignment = Alignment()
     words, salient = ("il", "cubo"), (COLOURS["rosso"], SHAPES["cubo"])
-    shares = alignment.observe(words, salient)
+    observed = alignment.observe(words, salient)
     for _ in range(3):
-        shares = alignment.observe(words, salient, shares)
+        observed = alignment.observe(words, salient, observed)
     assert alignment.word_counts == {"il": 1, "cubo": 1}
     # Each word's shares sum to one, so two words count two in all (floating point aside).
     assert sum(alignment.totals.values()) == pytest.approx(2.0)
@@ -47,8 +47,10 @@ def test_looking_again_replaces_what_was_counted() -> None:
 
 def test_it_survives_a_file_but_for_rounding() -> None:
     alignment = taught()
-    again = Alignment.from_json(alignment.to_json())
+    again = Alignment.from_json(alignment.to_json(), alignment.told_to_json())
     assert again.word_counts == alignment.word_counts
+    assert again.salient == alignment.salient
+    assert again.told == pytest.approx(alignment.told, abs=0.01)
     for word in COLOURS:
         # Counts are saved with two decimals.
         assert again.meanings(word)[COLOURS[word]] == pytest.approx(alignment.meanings(word)[COLOURS[word]], abs=1e-3)
@@ -67,14 +69,17 @@ def test_what_is_told_part_by_part_is_told_apart_from_what_is_told_as_one() -> N
     kinds = [verbs for verbs, often in told.items() for _ in range(often)]
     rng = np.random.default_rng(1)
     alignment = Alignment()
+    memory: list[tuple[tuple[str, ...], Observed, tuple[Way, ...]]] = []
     for _ in range(600):
         colour = str(rng.choice(list(COLOURS)))
         verbs = kinds[int(rng.integers(len(kinds)))]
         words = (verbs[0], "il", colour, *verbs[1:])
-        if verbs == ("prendi",):
-            alignment.observe(words, (COLOURS[colour], take))
-        else:
-            alignment.observe(words, (COLOURS[colour], carry, take, put), None, ways)
+        how: tuple[Way, ...] = (Way(),) if verbs == ("prendi",) else ways
+        salient = (take,) if verbs == ("prendi",) else (carry, take, put)
+        memory.append((words, alignment.observe(words, (COLOURS[colour], *salient), None, how), how))
+        for index in rng.integers(len(memory), size=5):  # looked at again, as the learner does
+            known, observed, how = memory[int(index)]
+            memory[int(index)] = known, alignment.observe(known, observed.salient, observed, how), how
     for word, concept in (("prendi", take), ("porta", carry), ("posa", put)):
         meanings = alignment.meanings(word)
         assert max(meanings, key=lambda meaning: meanings[meaning]) == concept
@@ -83,6 +88,6 @@ def test_what_is_told_part_by_part_is_told_apart_from_what_is_told_as_one() -> N
 def test_words_never_heard_are_rather_told_part_by_part_than_as_one() -> None:
     carry, take, put = (Concept("action", number) for number in (1, 2, 3))
     ways = Way(untold=frozenset((take, put))), Way(untold=frozenset((carry,)))
-    shares = Alignment().observe(tuple("abcdefgh"), (carry, take, put), None, ways)
-    for _, as_one, *as_parts in shares:
+    observed = Alignment().observe(tuple("abcdefgh"), (carry, take, put), None, ways)
+    for _, as_one, *as_parts in observed.shares:
         assert as_one < sum(as_parts)
