@@ -2,7 +2,7 @@
 
 Where a language joins a conjunction, a pronoun or a gender ending to a word, the joined word is rarer than its parts
 and means what they mean. A beginning or an ending is such a part when it was met with several words that also stand
-alone. Nothing of any language is built in.
+alone; of an ending two are enough where another is known that the same words take. Nothing of any language is built in.
 """
 
 from collections import defaultdict
@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
+from learning.grounding.ngrams import ngrams_of
 from learning.saved_numbers import saved_count
 
 LONGEST_AFFIX = 2
@@ -20,10 +21,16 @@ LEAST_FORMS = 3
 """A part must have been met in so many different words,"""
 LEAST_STEMS = 2
 """of so many that also stand alone: one with two endings is joined twice."""
+LEAST_LIKE = 2
+"""or with so many that also take an ending that is known: what takes the place of an ending is one."""
 ESTABLISHED = 4
-"""How often a word must have been heard to count as one that stands alone, or to be what another is a slip for."""
+"""How often a word must have been heard to count as one that stands alone, or to be what another is a slip for;"""
+STANDING = 2
+"""fewer are enough to be what another is that has a known part joined on."""
 SLIP = 2
-"""A word heard more often than this is no slip."""
+"""A word heard more often than this is no slip,"""
+SLIP_SHARE = 0.1
+"""unless what it would be a slip for is heard so much more often."""
 LONG_ENOUGH = 4
 """Letters of a word that may have slips."""
 
@@ -52,6 +59,18 @@ class JoinedWords:
         self._refresh()
         return self._pieces(word)
 
+    def compounds(self) -> set[str]:
+        """N-grams of parts that words consist of."""
+        return {ngram for word in self.counts for ngram in ngrams_of(self.pieces(word)) if " " in ngram}
+
+    def larger(self, word: str, part: str) -> list[str]:
+        """What of a word a part of it is in, and more: n-grams of its parts and itself; nothing of a simple word."""
+        pieces = self.pieces(word)
+        if len(pieces) == 1:
+            return []
+        longer = [ngram for ngram in ngrams_of(pieces) if ngram != part and f" {part} " in f" {ngram} "]
+        return [word, *longer]
+
     def split(self, words: tuple[str, ...]) -> tuple[tuple[str, ...], tuple[int, ...]]:
         """All parts of a sentence's words, and the index of the word that each belongs to."""
         parts = [(piece, index) for index, word in enumerate(words) for piece in self.pieces(word)]
@@ -79,9 +98,9 @@ class JoinedWords:
         if not self._dirty:
             return
         self._dirty = False
-        self._endings = frozenset(
-            _usual((word[-n:], word[:-n], word) for word, n in self._cuts() if self._alone(word[:-n]))
-        )
+        ended = [(word[-n:], word[:-n], word) for word, n in self._cuts() if self._alone(word[:-n])]
+        self._endings = frozenset(_usual(ended))
+        self._endings |= _like(ended, self._endings)
         self._beginnings = frozenset(
             _usual((word[:n], stem, word) for word, n in self._cuts() if (stem := self._stem_of(word[n:])))
         )
@@ -107,8 +126,13 @@ class JoinedWords:
         options = [(count, -len(parts), parts) for parts in self._readings(word) if (count := self._support(parts))]
         if options:
             return max(options)[2]
-        if self.counts.get(word, 0.0) <= SLIP and len(word) >= LONG_ENOUGH:
-            right = [(self.counts[other], other) for other in _slips(word) if self._alone(other)]
+        count = self.counts.get(word, 0.0)
+        if len(word) >= LONG_ENOUGH:
+            right = [
+                (meant, other)
+                for other in _slips(word)
+                if (meant := self._meant(other)) and count <= max(SLIP, SLIP_SHARE * meant)
+            ]
             if right:
                 return self._analyse(max(right)[1])
         return (word,)
@@ -124,10 +148,16 @@ class JoinedWords:
                     stem = rest[: len(rest) - len(end)]
                     yield tuple(part for part in (begin, stem, end) if part)
 
+    def _meant(self, word: str) -> float:
+        """How often a word was heard that another may be a slip for, or its stem; 0 where it is not established."""
+        if self._alone(word):
+            return self.counts[word]
+        return max((self._support(parts) for parts in self._readings(word)), default=0.0)
+
     def _support(self, parts: tuple[str, ...]) -> float:
         """How often the stem stands alone; 0 where it does not, or is the rarer of the two."""
         word = "".join(parts)
-        stems = [part for part in parts if self._alone(part)]
+        stems = [part for part in parts if len(part) >= SHORTEST_STEM and self.counts.get(part, 0.0) >= STANDING]
         count = max((self.counts[stem] for stem in stems), default=0.0)
         return count if count > self.counts.get(word, 0.0) else 0.0
 
@@ -140,6 +170,15 @@ def _usual(parts: Iterable[tuple[str, str, str]]) -> set[str]:
         stems[part].add(stem)
         words[part].add(word)
     return {part for part, met in stems.items() if len(met) >= LEAST_STEMS and len(words[part]) >= LEAST_FORMS}
+
+
+def _like(parts: Iterable[tuple[str, str, str]], known: frozenset[str]) -> frozenset[str]:
+    """Parts that were met in the place of known ones with enough stems (as in the signatures of Goldsmith 2001)."""
+    stems: defaultdict[str, set[str]] = defaultdict(set)
+    for part, stem, _ in parts:
+        stems[part].add(stem)
+    with_known = set().union(*(stems[part] for part in known)) if known else set()
+    return frozenset(part for part, met in stems.items() if len(met & with_known) >= LEAST_LIKE)
 
 
 def _slips(word: str) -> Iterator[str]:

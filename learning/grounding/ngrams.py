@@ -1,6 +1,7 @@
 """Words and n-grams of an utterance (thesis 4.2)."""
 
 import re
+from collections.abc import Mapping
 
 MAX_N = 3
 """Longest n-gram (thesis 6.4: N = 3)."""
@@ -13,6 +14,12 @@ Span = tuple[int, int]
 def words_of(utterance: str) -> tuple[str, ...]:
     """Return the lower-case words of an utterance in any script, without punctuation (thesis 4.2)."""
     return tuple(_WORD.findall(utterance.lower().replace("’", "'")))
+
+
+def with_words(utterance: str, instead: Mapping[str, str]) -> str:
+    """Return an utterance with other words in place of some, which are named as `words_of` gives them."""
+    plain = utterance.replace("’", "'")
+    return _WORD.sub(lambda found: instead.get(found[0].lower(), found[0]), plain)
 
 
 def ngrams_of(words: tuple[str, ...], longest: int = MAX_N) -> dict[str, list[Span]]:

@@ -8,12 +8,13 @@ import numpy as np
 from learning.concept_id import Concept
 from learning.concepts.concept_spaces import ConceptSpaces
 from learning.grammar.rcl import RclNode
+from learning.grounding.evidence import ANY
 from learning.grounding.kind_sizes import KindSizes
 from learning.grounding.namings import Namings
 from learning.grounding.scripts import script_of
 from learning.grounding.sorts import Sorts
 from learning.grounding.table_scene import RestingPlaces, TableRecord, TableScene, kinds_and_sizes, table_scene
-from learning.grounding.tongue import ANY, Tongue
+from learning.grounding.tongue import Tongue
 from learning.saved_numbers import saved_count
 
 SORTED = ("colour", "shape")

@@ -46,6 +46,49 @@ def test_swapped_letters_of_a_rare_word_are_put_right() -> None:
     assert joined.pieces("left") == ("left",)
 
 
+def test_a_slip_in_a_joined_word_is_put_right() -> None:
+    joined = heard("take", "put", "move")
+    for word in ("takezo", "putzo", "movezo", "tkaezo"):
+        joined.hear((word,))
+    assert joined.pieces("tkaezo") == ("take", "zo")
+
+
+def test_a_slip_that_comes_again_is_put_right_where_the_right_word_is_heard_far_more_often() -> None:
+    joined = heard("take the pear from there", times=40)
+    for _ in range(4):
+        joined.hear(("paer",))
+    for _ in range(5):
+        joined.hear(("form",))
+    assert joined.pieces("paer") == ("pear",)
+    assert joined.pieces("form") == ("form",)
+
+
+def test_an_ending_in_the_place_of_a_known_one_is_met_with_fewer_words() -> None:
+    joined = heard("take", "put", "move", "see")
+    for word in ("takezo", "putzo", "movezo", "takeq", "putq", "seex"):
+        joined.hear((word,))
+    assert joined.pieces("moveq") == ("move", "q")  # never heard, but take and put have both endings
+    assert joined.pieces("putx") == ("putx",)  # x is met with one word alone
+
+
+def test_a_word_heard_twice_is_enough_of_a_stem_for_a_known_ending() -> None:
+    joined = heard("take", "put", "move")
+    for word in ("takezo", "putzo", "movezo", "lower", "lower", "press", "presszo"):
+        joined.hear((word,))
+    assert joined.pieces("lowerzo") == ("lower", "zo")
+    assert joined.pieces("presszo") == ("presszo",)
+
+
+def test_what_a_part_is_in_is_told_of_words_that_are_taken_apart_alone() -> None:
+    joined = heard("take", "put", "move")
+    for word in ("takezo", "putzo", "movezo", "watakezo", "waputzo", "wamovezo"):
+        joined.hear((word,))
+    assert joined.larger("waputzo", "put") == ["waputzo", "wa put", "wa put zo", "put zo"]
+    assert joined.larger("put", "put") == []
+    assert {"wa put", "put zo", "wa put zo"} <= joined.compounds()
+    assert not joined.compounds() & set(joined.counts)
+
+
 def test_counts_survive_json() -> None:
     joined = heard("put it down")
     assert JoinedWords.from_json(joined.to_json()).to_json() == joined.to_json()

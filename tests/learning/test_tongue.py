@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from learning.concept_id import Concept
+from learning.grounding.joined_words import JoinedWords
+from learning.grounding.ngrams import ngrams_of
 from learning.grounding.tongue import Tongue
 from tests.learning.table_talk import ACTIONS, COLOURS, SHAPES, table_talk
 
@@ -77,6 +79,48 @@ def test_odd_sentences_are_bounded_and_harmless(spoken: tuple[str, Tongue]) -> N
     assert tongue.parse(("word",) * 10_000) is None
     assert tongue.parse(("🙂", "?")) is None
     assert tongue.meanings("never-heard") == {}
+
+
+def joined_tongue(times: int, *joined_forms: str) -> Tongue:
+    """A language whose "put" means two actions; forms of it were heard with one of them alone, each so many times."""
+    joined = JoinedWords()
+    tongue = Tongue(joined)
+    for stem in ("take", "move", "put"):
+        for at in range(10):
+            joined.hear((stem,))
+            tongue.correlation.observe((stem,), (Concept("action", at % 2), Concept("any action", 0)))
+            tongue.grounding.add(stem, Concept("action", at % 2))
+    for begin in ("", "wa"):
+        for end in ("zo", "ze"):
+            joined.hear((f"{begin}take{end}", f"{begin}move{end}", f"{begin}put{end}"))
+    for word in joined_forms:
+        for _ in range(times):
+            ngrams = (word, *ngrams_of(joined.pieces(word)))
+            tongue.correlation.observe(ngrams, (Concept("action", 0), Concept("any action", 0)))
+    return tongue
+
+
+@pytest.mark.parametrize("times", [1, 6])
+def test_a_joined_word_means_what_its_stem_does_until_it_is_known_better(times: int) -> None:
+    tongue = joined_tongue(times, "putzo")
+    both = {Concept("action", 0), Concept("action", 1)}
+    assert tongue.joined.pieces("putzo") == ("put", "zo")
+    assert set(tongue.meanings("put")) == both
+    assert set(tongue.meanings("putzo")) == (both if times == 1 else {Concept("action", 0)})
+
+
+def test_what_is_known_of_a_stem_with_a_beginning_is_known_with_any_ending() -> None:
+    tongue = joined_tongue(3, "waputzo", "waputze")
+    assert set(tongue.meanings("waputzo")) == {Concept("action", 0)}
+
+
+@pytest.mark.parametrize("times", [1, 6])
+def test_what_joined_words_do_not_mean_survives_json(times: int) -> None:
+    tongue = joined_tongue(times, "putzo", "waputzo")
+    again = Tongue.from_json(tongue.to_json())
+    for word in ("putzo", "waputzo", "waputze"):
+        assert set(again.meanings(word)) == set(tongue.meanings(word))
+    assert again.to_json() == tongue.to_json()
 
 
 def test_a_renamed_concept_takes_its_words_along() -> None:
