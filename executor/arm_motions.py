@@ -8,6 +8,7 @@ import numpy as np
 from executor.fingers import Fingers
 from executor.follow import follow
 from executor.handled import Handled
+from executor.holders import holders
 from robots.arm_model import ArmModel
 from robots.collision import CollisionModel, Obstacle
 from robots.kinematics import quaternion_xyzw, rotation_matrix
@@ -86,7 +87,7 @@ class ArmMotions:
         """What the arm may hit, with the held object in its hand.
 
         Args:
-            detailed: Objects to take part by part; the others are wrapped in their convex hulls.
+            detailed: Objects to take part by part, with what they lie in; the others are wrapped in convex hulls.
             without: Objects to leave out.
             may_touch: Objects that those links of the hand may touch that are made for it.
         """
@@ -98,6 +99,7 @@ class ArmMotions:
                 replace(each, pose_obstacle_in_world=_in_frame(tool, each.pose_obstacle_in_world)) for each in mine
             ]
             without = {*without, self.held}
+        detailed = {*detailed, *(each for number in detailed for each in holders(self.world, number))}
         return CollisionModel(
             self.world.placed_robot,
             self.world.obstacles(detailed=detailed, without=without),
@@ -114,6 +116,13 @@ class ArmMotions:
         if opening is not None:
             openings[self.arm_name] = opening
         return model.free(whole, openings, margin)
+
+    def touched(self, model: CollisionModel, q: FloatArray, margin: float, opening: float) -> set[str]:
+        """Names of what is nearer than a margin [m] to the robot with this arm at a posture (n,) [rad]."""
+        whole = self.world.commanded_positions
+        whole[self.joints] = q
+        openings = {**dict(zip(self.world.robot.arms, self.fingers.openings, strict=True)), self.arm_name: opening}
+        return {each.second for each in model.near(whole, margin, openings)}
 
     def way_free(
         self, model: CollisionModel, way: Trajectory, margin: float, opening: float | None = None, *, back: bool = False

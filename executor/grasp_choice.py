@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from executor.arm_motions import SAMPLES, WAY_CLEARANCE, ArmMotions, moved
+from executor.holders import holders
 from robots.kinematics import rotation_matrix
 from robots.pose import FloatArray
 from robots.trajectories import ToolLimits, Trajectory
@@ -23,6 +24,8 @@ OPENINGS = (0.016, 0.010)
 """Narrower openings than the widest, more than the object's width [m]: between neighbours, inside a bowl."""
 TILTS = (0.0, 0.35, -0.35, 0.8, -0.8)
 """Angles [rad] by which the hand comes from another side about the line between the pads."""
+MOST_WAYS, MOST_ASKED = 150, 20
+"""So many straight ways to grasps are planned at most, and so many grasps are looked at for what comes after them."""
 TABLE_CLEARANCE = 0.0015
 """Least distance [m] of the open hand from everything when it is at the grasp."""
 GENTLE = ToolLimits(0.15, 0.6, 6.0, 0.8, 3.0, 30.0)
@@ -53,6 +56,8 @@ def choose_grasp(
 ) -> ChosenGrasp | str:
     """The first grasp that the arm reaches freely and lifts the object from, or why there is none.
 
+    The effort is bounded by counts, not by time, so that equal worlds give equal grasps.
+
     Args:
         motions: The arm.
         object_id: The object.
@@ -71,21 +76,28 @@ def choose_grasp(
     model = motions.around(detailed={object_id})
     # What of the hand is not made to touch the object must not push it away when the fingers close.
     closed = motions.around(detailed={object_id}, may_touch={object_id})
-    lifted = motions.around(without={object_id})  # the object itself is lifted with the hand
-    reached = free = liftable = False
-    tool, before = None, None
+    # The object itself is lifted with the hand.
+    lifted = motions.around(detailed=holders(world, object_id), without={object_id})
+    reached = free = False
+    ways = asked = 0
+    tool, before, there = None, None, None
     for proposal in proposals:
         if proposal.pose_tool_in_world is not tool:  # those that follow differ in their opening only
             tool = proposal.pose_tool_in_world
             before = motions.reach(moved(tool, -APPROACH * proposal.approach), arm.home)
-            if before is not None and motions.reach(tool, before) is None:
-                before = None
-        if before is None:
+            there = None if before is None else motions.reach(tool, before)
+        if before is None or there is None:
             continue
         reached = True
         if not motions.free(model, before, WAY_CLEARANCE, proposal.opening):
             continue
         free = True
+        # Among other things most hands touch something at the grasp: that is known before a way there is planned.
+        if not motions.free(model, there, 0.0, proposal.opening):
+            continue
+        if ways == MOST_WAYS or asked == MOST_ASKED:
+            break
+        ways += 1
         way = motions.plan_straight(before, proposal.pose_tool_in_world, GENTLE).trajectory
         if way is None or not motions.way_free(model, way, TABLE_CLEARANCE, proposal.opening, back=True):
             continue
@@ -96,12 +108,13 @@ def choose_grasp(
         if up.trajectory is not None and motions.free(
             lifted, up.trajectory.sample(SAMPLES).position[-1], WAY_CLEARANCE, proposal.opening
         ):
-            liftable = True
+            asked += 1
             if accepts(proposal, end):
                 return ChosenGrasp(proposal, before, way)
+            before = None  # with another opening it suits no better
     if not reached:
         return "out of reach: no posture brings the hand to any grasp of the object"
-    if liftable:
+    if asked:
         return "no way on: no grasp that can be reached suits what comes after it"
     if not free:
         return "no room: the hand would touch something before every grasp"

@@ -44,6 +44,9 @@ class Destination:
             above = motions.reach(moved(there, self._up), posture)
             if above is None or not motions.free(self._around, above, WAY_CLEARANCE, grip.opening):
                 continue
+            rest = motions.reach(there, above)  # known before a way there is planned, as for grasps
+            if rest is None or not motions.free(self._around, rest, 0.0, grip.opening):
+                continue
             down = motions.plan_straight(above, there, GENTLE).trajectory
             if down is None:
                 continue

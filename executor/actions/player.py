@@ -23,6 +23,9 @@ from twin.grasp_poses import GraspPose
 AT_HOME = 0.05
 """An arm so near to its home posture [rad] is there."""
 
+HOPELESS = ("no grasp", "no room")
+"""How the reasons begin for which an arm cannot take a thing, wherever it shall go."""
+
 
 @dataclass(frozen=True, slots=True)
 class Played:
@@ -65,6 +68,7 @@ class ActionPlayer:
         self._rng = rng
         self._on_primitive = on_primitive
         self.grasps: tuple[GraspPose, ...] = ()
+        self._hopeless: dict[tuple[str, int, float], str] = {}
 
     def play(
         self,
@@ -109,11 +113,15 @@ class ActionPlayer:
                 for arm in self._arms(object_id):
                     hand = ActingHand(self.world, arm, object_id, goal, self._rng, slipped)
                     self.grasps = ()
-                    can = hand.foresee(plan)
+                    now = (arm, object_id, self.world.time)
+                    can = Handled(False, self._hopeless[now]) if now in self._hopeless else hand.foresee(plan)
                     if not can.success:
+                        if can.reason.startswith(HOPELESS):
+                            self._hopeless[now] = can.reason
                         first = next(step for step in (*plan.before, *plan.steps) if isinstance(step, Reach | Touch))
                         failed.append(Played(False, can.reason, _name(first), arm))
                         continue
+                    self._way_made(arm)
                     played = self._with(hand, plan, on_start)
                     self.grasps = hand.grasps
                     if played.success or not hand.may_give_up:
@@ -127,14 +135,16 @@ class ActionPlayer:
         # An arm that reached the object and had no room tells more than one that is far away.
         return min(failed, key=lambda each: each.reason.startswith("out of reach"))
 
-    def _way_made(self) -> bool:
-        """Whether an empty hand that was not at home went there, so that another one has room."""
+    def _way_made(self, acting: str = "") -> bool:
+        """Whether an empty hand that was not at home went there, so that the acting one, or any, has room."""
         made = False
         state = self.world.state()
         for number, name in enumerate(self.world.robot.arms):
+            if name == acting or len(self.world.robot.arms) == 1:
+                continue
             motions = ArmMotions(self.world, name, self._rng)
             away = float(np.abs(motions.q - motions.arm.home).max())
-            if state.arms[number].held is None and away > AT_HOME and len(self.world.robot.arms) > 1:
+            if state.arms[number].held is None and away > AT_HOME:
                 made |= motions.go(motions.arm.home, motions.around()).success
         return made
 

@@ -19,6 +19,7 @@ from executor.follow import wait
 from executor.tables.commands import LOOKS, SETTLE, Judge, by_rule
 from executor.tables.table_doer import TableDoer
 from learning import Knowledge
+from robots.kinematics import rotation_matrix
 from teleop.annotators import (
     Destination,
     OrderingFacts,
@@ -40,6 +41,8 @@ RAISED, GRASPED = ("hold", "lower", "drop"), ("lift", "hold")
 """The same while the thing is in the hand, in the air or still on the counter."""
 OFF = 0.02
 """In the air it is so far above the counter [m]."""
+UPRIGHT = 0.88
+"""A thing whose vertical axis points up by less than this (cosine) lies on its side, and is put back too."""
 OFF_COUNTER_X, OFF_COUNTER_Y = (0.42, 0.72), (-0.25, 0.25)
 """Where the thing leaves this [m], it is put back by hand, as people do."""
 UNTOUCHED = 0.004
@@ -70,7 +73,8 @@ def endure_at_table(
 ) -> Endurance:
     """Give commands for so many simulated minutes: each about the world as the last one left it.
 
-    Where the thing of a counter was pushed to its edge, the world is put back to its start, as somebody would do.
+    Where the thing of a counter was pushed to its edge or fell over, the world is put back to its start, as somebody
+    would do.
     `drift` is how far things moved, in one command at most, that it was not about.
 
     Args:
@@ -199,7 +203,8 @@ def _at_counter(world: WitnessedWorld, rng: np.random.Generator, language: str) 
     x, y, z = pose_of(state, spec.id).position.tolist()
     held = any(arm.held == spec.id and arm.gripper_closed for arm in state.arms)
     inside = OFF_COUNTER_X[0] < x < OFF_COUNTER_X[1] and OFF_COUNTER_Y[0] < y < OFF_COUNTER_Y[1]
-    if not held and (not inside or z < 0.0):
+    lies = rotation_matrix(pose_of(state, spec.id).orientation_xyzw)[2, 2] < UPRIGHT
+    if not held and (not inside or z < 0.0 or lies):
         return None
     raised = clear_below(world, spec.id) > OFF
     known = EMPTY_HANDED if not held else RAISED if raised else GRASPED

@@ -1,12 +1,13 @@
 """Where on a table a goal can be met: places that are what the words say, free, and well inside what is meant."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from learning.concept_id import Concept
 from learning.concepts.concept_spaces import ConceptSpaces
+from learning.concepts.gaussian import Gaussian
 from learning.concepts.table_spaces import ADJACENT
 from learning.grounding.table_scene import MIDDLE, OVER, SIDE_PLACES, RestingPlaces, relation_of
 from learning.interpretation.table_interpreter import TableGoal
@@ -24,12 +25,20 @@ WELL_INSIDE = 1.2
 """On a side of the table is best so many standard deviations off the middle of all resting places."""
 FARTHEST = 2.0
 """Nothing is put further off than so many of them."""
+SPOTS = 4
+"""Places that are tried for one goal."""
+FIRST_SPOTS = 40
+"""The best of all places, from which those are taken"""
+APART = 0.05
+"""so far apart [m]."""
 ANGLES = 24
 DISTANCES = 8
 ASIDE_COST = 5.0
 """What a radian off the direction that is meant costs, in standard deviations."""
-TYPICAL_GAP = 0.05
-"""Room that people leave between things that are beside each other [m]."""
+FARTHEST_ASIDE = 3.0
+"""Further off a direction than so many standard deviations nobody ever meant it."""
+TYPICAL_GAP, WIDEST_GAP = 0.05, 0.15
+"""Room that people leave between things that are beside each other, usually and at most [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +61,12 @@ class TableThings:
     Attributes:
         location: Their centres, (N, 3) [m].
         extent: Their length, width and height, (N, 3) [m].
+        yaw: Directions of their lengths, (N,) [rad]; None where they are not known.
     """
 
     location: FloatArray
     extent: FloatArray
+    yaw: FloatArray | None = None
 
     @property
     def radius(self) -> FloatArray:
@@ -66,6 +77,17 @@ class TableThings:
     def top(self) -> FloatArray:
         """Height of each top, (N,) [m]."""
         return np.asarray(self.location[:, 2] + 0.5 * self.extent[:, 2])
+
+    def away(self, place: FloatArray) -> FloatArray:
+        """How far each is from a place (2,), seen from above, (N,) [m]; less than 0 inside."""
+        off = place[:2] - self.location[:, :2]
+        if self.yaw is None:
+            return np.asarray(np.linalg.norm(off, axis=1) - self.radius)
+        cos, sin = np.cos(self.yaw), np.sin(self.yaw)
+        along = np.stack([off[:, 0] * cos + off[:, 1] * sin, off[:, 1] * cos - off[:, 0] * sin], axis=1)
+        beyond = np.abs(along) - 0.5 * self.extent[:, :2]
+        inside = np.minimum(beyond.max(axis=1), 0.0)
+        return np.asarray(np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + inside)
 
 
 def spots_for(
@@ -90,6 +112,47 @@ def spots_for(
     else:
         found += _at(goal.concepts, moved, things, resting)
     return [spot for _, spot in sorted(found, key=lambda each: each[0])]
+
+
+def best_apart(spots: Sequence[Spot]) -> tuple[Spot, ...]:
+    """The best of many places, the best first, that are apart from each other."""
+    kept: list[Spot] = []
+    for spot in spots[:FIRST_SPOTS]:
+        if all(np.linalg.norm(spot.position - other.position) > APART for other in kept):
+            kept.append(spot)
+    return tuple(kept[:SPOTS])
+
+
+def meets(
+    goal: TableGoal,
+    place: FloatArray,
+    extent: FloatArray,
+    grounds: Sequence[tuple[FloatArray, FloatArray]],
+    spaces: ConceptSpaces,
+    resting: RestingPlaces,
+) -> bool:
+    """Whether a thing is where a goal says: in that part of the table, or so to one of the things it was to go to.
+
+    Args:
+        goal: What is meant.
+        place: Where the thing's centre is, (3,) [m].
+        extent: Its length, width and height, (3,) [m].
+        grounds: Centre (3,) and extent (3,) [m] of each thing that it may go to; none for a part of the table.
+        spaces: Concepts of directions.
+        resting: Where things were ever seen to rest.
+    """
+    if not goal.grounds:
+        return goal.concepts <= resting.at(place)
+    wanted = frozenset((OVER,)) if _onto(goal.concepts, spaces) else goal.concepts
+    return any(wanted <= relation_of(place - centre, spaces, np.stack([extent, its])) for centre, its in grounds)
+
+
+def lies_over(index: int, ground: int, things: TableThings, spaces: ConceptSpaces) -> bool:
+    """Whether a thing is seen on or in another, and not below it."""
+    offset = things.location[index] - things.location[ground]
+    if offset[2] < -0.5 * things.extent[ground, 2]:
+        return False
+    return OVER in relation_of(offset, spaces, things.extent[[index, ground]])
 
 
 def _at(
@@ -122,28 +185,50 @@ def _by(
     """Free places in a relation to a thing, each with how far it is from typical."""
     centre, height = things.location[ground], float(things.extent[moved, 2])
     on_top = np.array([centre[0], centre[1], things.top[ground] + 0.5 * height])
-    means = [
-        spaces.mixtures["direction"].components[spaces.resolve("direction", concept.number)].mean
-        for concept in concepts
-        if concept.space == "direction"
-    ]
-    if OVER in concepts or any(mean[2] > STEEP * np.linalg.norm(mean) for mean in means):
-        yield 0.0, Spot(on_top, ground)
+    if _onto(concepts, spaces):
+        others = (each for each in range(len(things.location)) if each not in (moved, ground))
+        if not any(lies_over(each, ground, things, spaces) for each in others):
+            yield 0.0, Spot(on_top, ground)
         return
+    directions = _directions(concepts, spaces)
     typical = float(things.radius[ground] + things.radius[moved]) + TYPICAL_GAP
-    for distance in np.linspace(0.5 * typical, ADJACENT, DISTANCES):
+    farthest = min(typical - TYPICAL_GAP + WIDEST_GAP, ADJACENT)
+    for distance in np.linspace(0.5 * typical, farthest, DISTANCES):
         for angle in 2.0 * np.pi * np.arange(ANGLES) / ANGLES:
             way = np.array([np.cos(angle), np.sin(angle)])
             place = np.append(centre[:2] + distance * way, 0.5 * height)
             if not concepts <= relation_of(place - centre, spaces, things.extent[[moved, ground]]):
                 continue
+            aside = [_aside(way, each) for each in directions]
+            if any(off > FARTHEST_ASIDE * spread for off, spread in aside):
+                continue
             room = _room(place, moved, things)
             if room >= LEAST_ROOM:
-                aside = max(
-                    (float(np.arccos(np.clip(way @ mean[:2] / np.linalg.norm(mean), -1.0, 1.0))) for mean in means),
-                    default=0.0,
-                )
-                yield ASIDE_COST * aside + abs(distance - typical) / 0.05 + _crowded(room), Spot(place)
+                aside_most = max((off for off, _ in aside), default=0.0)
+                yield ASIDE_COST * aside_most + abs(distance - typical) / 0.05 + _crowded(room), Spot(place)
+
+
+def _directions(concepts: frozenset[Concept], spaces: ConceptSpaces) -> list[Gaussian]:
+    """The directions among some concepts."""
+    return [
+        spaces.mixtures["direction"].components[spaces.resolve("direction", concept.number)]
+        for concept in concepts
+        if concept.space == "direction"
+    ]
+
+
+def _onto(concepts: frozenset[Concept], spaces: ConceptSpaces) -> bool:
+    """Whether concepts say that one thing is on or in another."""
+    means = [each.mean for each in _directions(concepts, spaces)]
+    return OVER in concepts or any(mean[2] > STEEP * np.linalg.norm(mean) for mean in means)
+
+
+def _aside(way: FloatArray, direction: Gaussian) -> tuple[float, float]:
+    """How far a way (2,) is off a direction, and how far ways of that direction usually are [rad]."""
+    mean = direction.mean[:2] / np.linalg.norm(direction.mean)
+    across = np.array([-mean[1], mean[0]])
+    spread = float(np.sqrt(across @ direction.covariance[:2, :2] @ across))
+    return float(np.arccos(np.clip(way @ mean, -1.0, 1.0))), spread
 
 
 def _room(place: FloatArray, moved: int, things: TableThings) -> float:
@@ -151,8 +236,7 @@ def _room(place: FloatArray, moved: int, things: TableThings) -> float:
     others = np.arange(len(things.location)) != moved
     if not np.any(others):
         return np.inf
-    away = np.linalg.norm(things.location[others, :2] - place[:2], axis=1)
-    return float((away - things.radius[others] - things.radius[moved]).min())
+    return float(things.away(place)[others].min() - things.radius[moved])
 
 
 def _crowded(room: float) -> float:

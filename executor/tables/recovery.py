@@ -64,6 +64,26 @@ def come_to_rest(world: "World", things: TableThings, rng: np.random.Generator, 
     return "; ".join(dict.fromkeys(told))
 
 
+def bring_home(world: "World", rng: np.random.Generator) -> None:
+    """Bring arms home whose hands hold nothing; a closed hand goes as it is, and opens there.
+
+    Args:
+        world: The twin.
+        rng: Where the planners' chance comes from.
+    """
+    for number, name in enumerate(world.robot.arms):
+        hand = world.state().arms[number]
+        if hand.held is not None and hand.gripper_closed:
+            continue
+        motions = ArmMotions(world, name, rng)
+        if _away(world, name, rng) and not motions.go(motions.arm.home, motions.around()).success:
+            handling = Handling(world, name, rng)
+            if handling.leave().success:
+                motions.go(motions.arm.home, motions.around())
+        if hand.gripper_closed and not _away(world, name, rng):
+            motions.fingers.move(motions.arm.gripper.max_opening)
+
+
 def _away(world: "World", arm: str, rng: np.random.Generator) -> bool:
     """Whether an arm is not at home."""
     motions = ArmMotions(world, arm, rng)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,12 +12,15 @@ from executor.actions.action_plan import plan_action
 from executor.actions.quantities import Quantities, quantities_of
 from executor.errors import RefusalError
 from executor.execution.answer import Answer, OnAmbiguous
+from executor.execution.doer import Doer
 from executor.execution.history import KEPT
 from executor.execution.stopwatch import Stopwatch
-from executor.execution.understood import Option, Referent, Understood, offer, parts, question, quoted
+from executor.execution.understood import Option, Referent, Understood, offer, offer_again, parts, question, quoted
+from executor.lexicon import entry_of
 from executor.report import ExecutionReport, joined, report_of, told
-from executor.tables.clearing import carrying_action, in_the_way, places_aside
-from executor.tables.places import Spot, spots_for
+from executor.tables.clearing import MOST_IN_THE_WAY, covering, in_the_way
+from executor.tables.places import Spot, best_apart, spots_for
+from executor.tables.putting_aside import put_aside
 from executor.tables.table_names import TableNames
 from executor.tables.table_plan import TablePlan
 from executor.tables.table_runner import TableRunner
@@ -38,12 +41,8 @@ if TYPE_CHECKING:
     from learning import Knowledge
     from twin import World
 
-SPOTS = 4
-"""Places that are tried for one goal."""
-FIRST_SPOTS = 40
-"""The best of all places, from which those are taken"""
-APART = 0.05
-"""so far apart [m]."""
+NO_ROOM = ("no room", "no way on")
+"""How the reasons begin of what other things may be to blame for."""
 JOINS = 0.7
 """A word means nothing by itself when it was passed over in at least this share of its uses."""
 REMEMBERED = 2 * KEPT
@@ -73,6 +72,7 @@ class TableDoer:
         knowledge: What was learned.
         rng: Source of the camera's noise and of the planners' chance.
         on_ambiguous: What to do where several things fit.
+        clear: Whether what keeps the hand from a thing is put aside.
 
     Attributes:
         stopwatch: Times of the present command.
@@ -86,10 +86,12 @@ class TableDoer:
         knowledge: "Knowledge",
         rng: np.random.Generator,
         on_ambiguous: OnAmbiguous = OnAmbiguous.ASK,
+        clear: bool = False,
     ) -> None:
         self.world = world
         self.knowledge = knowledge
         self.on_ambiguous = on_ambiguous
+        self.clear = clear
         self.stopwatch = Stopwatch()
         self.on_start: Callable[[int, str], None] = lambda thing, arm: None
         self.on_progress: Callable[[object], None] = lambda step: None
@@ -115,10 +117,11 @@ class TableDoer:
                 self._eye = RobotEye(self.world.spec, self.world.robot)
             before = None if self._seen is None else self._seen[1]
             view = self._viewed(self._observed(self._eye), before)
-            if before is not None and not set(before.numbers) <= set(view.numbers):
+            if before is not None and len(colours := lost_colours(view)):
                 # What lies in a thing looks like a part of it, unless it is known to be another.
-                again = self._viewed(self._observed(self._eye, lost_colours(view, before)), before)
-                view = max(view, again, key=lambda each: len(set(before.numbers) & set(each.numbers)))
+                again = self._viewed(self._observed(self._eye, colours), before)
+                known = {*before.numbers, *(each.number for each in before.lost)}
+                view = max(view, again, key=lambda each: len(known & set(each.numbers)))
             self._seen = self.world.time, view
             self._looks.pop(self.world.time, None)
             self._looks[self.world.time] = view, self._broken_off, self._taken
@@ -175,18 +178,48 @@ class TableDoer:
 
     def carry_out(self, understood: Understood, view: TableView, sentence: str) -> ExecutionReport:
         """Carry out a step; see `Doer`."""
+        cleared: list[int] = []
+        while True:
+            assert isinstance(understood, TableUnderstood) and understood.reading is not None
+            report, blocking = report_of(understood, sentence), understood.blocked
+            if not blocking:
+                report = self._carried_out(understood, view, sentence)
+                blocking = self._around(report, understood, view)
+                if not blocking:
+                    return _after(cleared, report)
+                names = self._named(blocking, understood.reading, view)
+                report = told(report_of(understood, sentence), report.answer, f"{report.reason}: {names}")
+            if not self.clear:
+                return _after(cleared, report)
+            if len(cleared) == MOST_IN_THE_WAY:
+                return _after(
+                    cleared, told(report, Answer.IMPOSSIBLE, "more is in the way than is cleared for one goal")
+                )
+            spot = understood.spots[0] if understood.spots else None
+            with self.stopwatch.part("move"), self._timed():
+                put = put_aside(blocking, understood.goals[0], spot, view, self.runner, self.knowledge)
+            if put.number is None:
+                report = replace(report_of(understood, sentence), outcome=put.outcome)
+                return _after(cleared, told(report, put.answer, f"clearing what is in the way: {put.reason}"))
+            cleared.append(put.number)
+            now = self.look()
+            understood, view = self._again(understood, view, now), now
+            if understood.answer is not None and not understood.blocked:
+                return _after(cleared, report_of(understood, sentence))
+
+    def _carried_out(self, understood: TableUnderstood, view: TableView, sentence: str) -> ExecutionReport:
+        """Carry out a step that nothing is known to be in the way of."""
         report = report_of(understood, sentence)
-        assert isinstance(understood, TableUnderstood) and understood.reading is not None
-        assert understood.reading.action is not None
-        if understood.blocked:
-            return self._cleared(understood, view, sentence)
+        assert understood.reading is not None and understood.reading.action is not None
         goal, begun = understood.goals[0], self.world.time
         thing = view.index_of(goal.object_id)
         if thing is not None and not (view.held == thing and self._taken is not None):
             self._taken = Taken.of(view, thing)
         sound, self._broken_off = not self._broken_off, True  # so it stays where something raises on the way: a stop
         with self.stopwatch.part("move"), self._timed():
-            run = self.runner.carry_out(goal, understood.reading.action, understood.spots, view, sound=sound)
+            action, reading = understood.reading.action, understood.reading
+            meant = self._sound(reading) if understood.spots and reading.goal is not None else None
+            run = self.runner.carry_out(goal, action, understood.spots, view, meant=meant, sound=sound)
         self._broken_off = not sound and self.world.time == begun
         self.stopwatch.add("simulated", self.world.time - begun)
         report = replace(report, attempts=run.attempts, outcome=run.outcome)
@@ -194,29 +227,36 @@ class TableDoer:
             return told(report, Answer.IMPOSSIBLE if self.world.time == begun else Answer.FAILED, run.note)
         return told(report, run.answer, joined(run.outcome.explanation, run.note))
 
-    def _cleared(self, understood: TableUnderstood, view: TableView, sentence: str) -> ExecutionReport:
-        """Put aside what is in the way, and carry the step out then."""
-        report, (number,) = report_of(understood, sentence), understood.blocked
-        index, moved = view.index_of(number), view.index_of(understood.goals[0].object_id)
-        assert index is not None and moved is not None
-        try:
-            action, graphlet = carrying_action(self.knowledge)
-        except RefusalError as refusal:
-            return told(report, Answer.IMPOSSIBLE, str(refusal))
-        spots = _apart(places_aside(index, moved, understood.spots[0], view.things, self.knowledge))
-        if not spots:
-            return told(report, Answer.IMPOSSIBLE, "what is in the way cannot be cleared: there is no free place")
-        with self.stopwatch.part("move"), self._timed():
-            run = self.runner.carry_out(Goal(number, spots[0].position, graphlet), action, spots, view)
-        if run.outcome is None or not run.outcome.right:
-            answer = Answer.IMPOSSIBLE if run.outcome is None else run.answer
-            why = joined("" if run.outcome is None else run.outcome.explanation, run.note)
-            return told(replace(report, outcome=run.outcome), answer, f"clearing what is in the way: {why}")
-        now = self.look()
-        again = self.understand(understood.words, now, None, self._choices[-1] if self._choices else None)
-        if not again.clear:
-            return told(replace(report, cleared=(number,)), Answer.FAILED, again.reason)
-        return replace(self.carry_out(again, now, sentence), cleared=(number,))
+    def _around(self, report: ExecutionReport, understood: TableUnderstood, view: TableView) -> tuple[int, ...]:
+        """Numbers of the things that keep the hand from what a step is about, where it could not begin for them."""
+        thing = view.index_of(understood.goals[0].object_id)
+        if report.answer.good or not report.reason.startswith(NO_ROOM) or thing is None:
+            return ()
+        return self.runner.around(thing, view)
+
+    def _named(self, numbers: tuple[int, ...], reading: TableReading, view: TableView) -> str:
+        """That some things are in the way, by name."""
+        indices = [index for index in map(view.index_of, numbers) if index is not None]
+        names = self._names.apart(script_of(reading.words), view.observation, indices)
+        return f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} in the way"
+
+    def _again(self, understood: TableUnderstood, before: TableView, now: TableView) -> TableUnderstood:
+        """The same step after something was put aside: the things that were meant are still meant."""
+        reading = understood.reading
+        assert reading is not None
+
+        def here(indices: tuple[int, ...]) -> tuple[int, ...]:
+            found = (now.index_of(before.numbers[index]) for index in indices)
+            return tuple(index for index in found if index is not None)
+
+        things, goal = here(reading.things), reading.goal
+        grounds = () if goal is None else here(goal.grounds)
+        plain = replace(understood, answer=None, reason="", blocked=(), spots=())
+        if not things or (goal is not None and goal.grounds and not grounds):
+            return replace(plain, answer=Answer.FAILED, reason="after clearing, what is meant was lost from sight")
+        goal = None if goal is None else replace(goal, grounds=grounds)
+        reading = replace(reading, things=things, goal=goal)
+        return self._placed(replace(plain, reading=reading), now, reading)
 
     def where(self, view: TableView, number: int) -> tuple[FloatArray, float] | None:
         """Centre and half of the width of a thing; see `Doer`."""
@@ -272,6 +312,14 @@ class TableDoer:
             self._seen = self.world.time, view
         elif self._seen is not None:
             self._seen = np.nan, self._seen[1]  # looked at anew, with the numbers that things had
+
+    def go_on_from(self, before: Doer[Any]) -> None:
+        """Take over what another one has seen, numbers and all; see `Doer`."""
+        assert isinstance(before, TableDoer)
+        self.close()
+        self._eye, before._eye = before._eye, None
+        self._seen, self._looks = before._seen, before._looks
+        self._taken, self._broken_off = before._taken, before._broken_off
 
     def _quantities(self, understood: Understood) -> Quantities:
         """How much of each change was seen with the action."""
@@ -332,7 +380,7 @@ class TableDoer:
             goals,
             _referents(reading, view),
             options,
-            reading.unknown,
+            (*reading.unknown, *reading.unlearned),
             reading=reading,
             share=1.0 if reading.understood else 0.0,
         )
@@ -340,26 +388,47 @@ class TableDoer:
     def _placed(self, found: TableUnderstood, view: TableView, reading: TableReading) -> TableUnderstood:
         """The same with places for the thing, where the action brings it somewhere."""
         (goal,) = found.goals
-        if reading.goal is None or all(state.holds for state in goal.action.states[1:]):
-            return found
         thing = reading.things[0]
-        language = self.knowledge.table_language
-        wanted = spots_for(self._sound(reading), thing, view.things, self.knowledge.spaces, language.resting)
+        on_it: tuple[int, ...] = ()
+        if any(state.holds for state in goal.action.states) and view.held != thing:
+            on_it = covering(thing, view.things, self.knowledge, view.held)
+        covered = tuple(view.numbers[index] for index in on_it)
+        if reading.goal is None or all(state.holds for state in goal.action.states[1:]):
+            if not covered:
+                return found
+            return self._blocked(found, covered, "it cannot be taken", (), view, reading)
+        language, meant = self.knowledge.table_language, self._sound(reading)
+        wanted = spots_for(meant, thing, view.things, self.knowledge.spaces, language.resting)
         if wanted:
-            spots = _apart(wanted)
+            spots = best_apart(wanted)
+            if covered:
+                return self._blocked(found, covered, "it cannot be taken", spots, view, reading)
             return replace(found, goals=(replace(goal, position=spots[0].position),), spots=spots)
-        no_room = replace(found, answer=Answer.IMPOSSIBLE, reason="there is no room where it shall go")
-        blocking = in_the_way(self._sound(reading), thing, view.things, self.knowledge)
+        blocking = in_the_way(meant, thing, view.things, self.knowledge)
         if blocking is None:
-            return no_room
-        index, spots = blocking[0], _apart(blocking[1])
-        name = self._names.apart(script_of(reading.words), view.observation, (index,))[0]
+            return replace(found, answer=Answer.IMPOSSIBLE, reason="there is no room where it shall go")
+        numbers = tuple(dict.fromkeys((*covered, *(view.numbers[index] for index in blocking[0]))))
+        why = "there is no room where it shall go"
+        return self._blocked(found, numbers, why, best_apart(blocking[1]), view, reading)
+
+    def _blocked(
+        self,
+        found: TableUnderstood,
+        numbers: tuple[int, ...],
+        why: str,
+        spots: tuple[Spot, ...],
+        view: TableView,
+        reading: TableReading,
+    ) -> TableUnderstood:
+        """The same with what is in the way, the first to be put aside first, and where the thing goes without that."""
+        (goal,) = found.goals
         return replace(
-            no_room,
-            reason=f"{no_room.reason}: {name} is in the way",
-            goals=(replace(goal, position=spots[0].position),),
+            found,
+            answer=Answer.IMPOSSIBLE,
+            reason=f"{why}: {self._named(numbers, reading, view)}",
+            goals=(replace(goal, position=spots[0].position if spots else None),),
             spots=spots,
-            blocked=(view.numbers[index],),
+            blocked=numbers,
         )
 
     def _sound(self, reading: TableReading) -> TableGoal:
@@ -382,6 +451,9 @@ class TableDoer:
         """Why a step is not acted on; None when it can be."""
         if reading.unknown:
             return Answer.UNKNOWN_WORD, offer(reading.unknown)
+        if reading.unlearned:
+            word = reading.unlearned[0]
+            return Answer.UNKNOWN_WORD, offer_again(word, entry_of(self.knowledge, word).heard)
         if reading.tree is None or reading.action is None:
             return Answer.REFUSED, "no word says what to do" if reading.tree is not None else reading.explanation
         if not reading.things:
@@ -416,13 +488,10 @@ class TableDoer:
         return "destination" in tongue.grammar.rules
 
 
-def _apart(spots: list[Spot]) -> tuple[Spot, ...]:
-    """The best of many places that are apart from each other."""
-    kept: list[Spot] = []
-    for spot in spots[:FIRST_SPOTS]:
-        if all(np.linalg.norm(spot.position - other.position) > APART for other in kept):
-            kept.append(spot)
-    return tuple(kept[:SPOTS])
+def _after(cleared: list[int], report: ExecutionReport) -> ExecutionReport:
+    """A report with what was put aside before: then something was done, whatever came after."""
+    report = replace(report, cleared=tuple(cleared))
+    return replace(report, answer=Answer.FAILED) if cleared and report.answer is Answer.IMPOSSIBLE else report
 
 
 def _grounds(reading: TableReading) -> tuple[int, ...]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from executor.actions.obstruction import around_grasps
 from executor.actions.player import ActionPlayer, Played
 from executor.actions.quantities import quantities_of
 from executor.actions.things import corners_of, pose_of
@@ -13,10 +14,11 @@ from executor.errors import RefusalError
 from executor.execution.answer import Answer
 from executor.follow import wait
 from executor.report import Outcome, answer_of, joined
-from executor.tables.places import Spot
-from executor.tables.recovery import SAME, come_to_rest
+from executor.tables.places import Spot, meets
+from executor.tables.recovery import SAME, bring_home, come_to_rest
 from executor.tables.table_view import TableView, alike
 from learning.interpretation.interpretation import Goal
+from learning.interpretation.table_interpreter import TableGoal
 from robots.pose import FloatArray
 from twin.grasp_poses import GraspPose
 
@@ -65,6 +67,15 @@ class _Attempt:
     grasps: tuple[GraspPose, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class _Meant:
+    """What the words say of where a thing goes, with the numbers of things it may go to, and where those were."""
+
+    goal: TableGoal
+    grounds: tuple[int, ...]
+    view: TableView
+
+
 class TableRunner:
     """Carries out goals in one world, seeing it through a camera.
 
@@ -88,9 +99,17 @@ class TableRunner:
         self.on_progress: Callable[[object], None] = lambda step: None
         self._rng = rng
         self._look = look
+        self._meant: _Meant | None = None
 
     def carry_out(
-        self, goal: Goal, action: int, spots: tuple[Spot, ...], view: TableView, *, sound: bool = True
+        self,
+        goal: Goal,
+        action: int,
+        spots: tuple[Spot, ...],
+        view: TableView,
+        *,
+        meant: TableGoal | None = None,
+        sound: bool = True,
     ) -> TableRun:
         """Play an action until a look shows that the goal is reached, at most `ATTEMPTS` times.
 
@@ -101,9 +120,12 @@ class TableRunner:
             action: Number of its action.
             spots: Places for the thing, the best first; none where it goes nowhere.
             view: What was seen of the table as it stands.
+            meant: What the words say of where the thing goes, in that view; None where it just goes to its place.
             sound: Whether the hands are sound now; else they are brought to rest first.
         """
         before, note = view, ""
+        grounds = () if meant is None else tuple(view.numbers[each] for each in meant.grounds)
+        self._meant = None if meant is None else _Meant(meant, grounds, view)
         slipped: tuple[GraspPose, ...] = ()
         outcome: Outcome | None = None
         if not sound:
@@ -119,6 +141,8 @@ class TableRunner:
             if self.world.time == begun:  # nothing has moved
                 again = "" if outcome is None else "a second try is not possible: "
                 return TableRun(outcome, attempt - 1, joined(note, again + done.played.reason))
+            if done.played.success:  # an arm that stays would hide what it did, and be in the other's way
+                bring_home(self.world, self._rng)
             wait(self.world, REST, self.world.commanded_openings)
             now = self._look()
             outcome = self._judge(goal, thing, view, now, done.spot)
@@ -139,6 +163,20 @@ class TableRunner:
             assert first is not None
             outcome = replace(outcome, disturbed=self._disturbed(first, before, self._look()))
         return TableRun(outcome, attempt, note)
+
+    def around(self, thing: int, view: TableView) -> tuple[int, ...]:
+        """Numbers of the things that keep every arm from a thing, the one to begin with first; none if nothing does.
+
+        Args:
+            thing: Index of the thing.
+            view: What is seen of the table as it is.
+        """
+        real = self._real(view, thing)
+        if real is None:
+            return ()
+        numbers = {self._real(view, index): number for index, number in enumerate(view.numbers) if index != view.held}
+        met = around_grasps(self.world, real, self._rng)
+        return tuple(numbers[each] for each in met) if all(each in numbers for each in met) else ()
 
     def _held(self, view: TableView, goal: Goal) -> int | None:
         """Id of what is in a hand, if it is what a goal is about."""
@@ -226,10 +264,28 @@ class TableRunner:
             error = float(np.linalg.norm(now.things.location[track, :2] - spot.position[:2]))
             reached = error < SAME
             words.append(f"it rests {1000 * error:.0f} mm from the middle of its place")
+            if reached and not self._is_as_meant(track, now):
+                reached = False
+                words.append("that is not where the words say")
         disturbed = self._disturbed(thing, before, now)
         if disturbed:
             words.append(f"{len(disturbed)} other thing{'s' if len(disturbed) > 1 else ''} moved as well")
         return Outcome(reached, error, disturbed, "; ".join(words), doubt)
+
+    def _is_as_meant(self, track: int, now: TableView) -> bool:
+        """Whether a thing is where the words say: in that part of the table, beside, or over what it shall be on."""
+        meant = self._meant
+        if meant is None:
+            return True
+        grounds = []
+        for number in meant.grounds:
+            index = now.index_of(number)
+            seen, at = (meant.view, meant.view.index_of(number)) if index is None else (now, index)
+            if at is not None:  # what the thing hides now is where it was
+                grounds.append((seen.things.location[at], seen.things.extent[at]))
+        place, extent = now.things.location[track], now.things.extent[track]
+        spaces, resting = self.knowledge.spaces, self.knowledge.table_language.resting
+        return meets(meant.goal, place, extent, grounds, spaces, resting)
 
     def _again(self, thing: int, before: TableView, now: TableView, spot: Spot | None) -> int | None:
         """Which of the things that are seen now is the one that was handled: like it, and where it should be."""
@@ -244,17 +300,22 @@ class TableRunner:
         return best if off and off[best] < NEAR_BY else None
 
     def _disturbed(self, thing: int, before: TableView, now: TableView) -> tuple[int, ...]:
-        """Things that are not where they were, but somewhere near; what the arm hides now was not disturbed."""
+        """Things that are not where they were, but somewhere near; what the arm hides now was not disturbed.
+
+        Of what is seen smaller than before a part is hidden: its middle is off by half of that at most.
+        """
         if not len(now.things.location):
             return ()
         places = before.things.location
+        hidden = 0.5 * np.maximum(before.things.extent[None, :, 0] - now.things.extent[:, None, 0], 0.0)
         away = np.linalg.norm(now.things.location[:, None] - places[None], axis=2)
-        new = np.flatnonzero(away.min(axis=1) > DISTURBED)
+        moved = away > DISTURBED + hidden
+        new = np.flatnonzero(moved.all(axis=1))
         return tuple(
             before.numbers[index]
             for index in range(len(places))
             if index != thing
-            and away[:, index].min() > DISTURBED
+            and moved[:, index].all()
             and any(away[other, index] < NEAR_BY and alike(before, index, now, int(other)) for other in new)
         )
 

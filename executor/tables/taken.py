@@ -87,6 +87,9 @@ def _with_another(observation: Observation) -> Observation:
         colour=more(observation.colour, 0.0),
         shape=more(observation.shape, 0.0),
         extent=None if observation.extent is None else more(observation.extent, 0.0),
+        yaw=None
+        if observation.yaw is None
+        else np.append(observation.yaw, np.zeros((len(observation.yaw), 1)), axis=1),
         visible=None if visible is None else np.append(visible, np.ones((len(visible), 1), dtype=bool), axis=1),
         features={name: more(values, np.nan) for name, values in observation.features.items()},
     )

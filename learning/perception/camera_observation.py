@@ -55,7 +55,7 @@ def gathered(own: Proprioception, frames: Sequence[Sequence[Sighting]], table: T
     ]
     number = len(kept)
     location, extent = np.zeros((len(frames), number, 3)), np.zeros((len(frames), number, 3))
-    colour = np.zeros((len(frames), number, 3))
+    colour, yaw = np.zeros((len(frames), number, 3)), np.zeros((len(frames), number))
     shape, glimpsed = np.zeros((2, len(frames), number, 33))
     visible, held = np.zeros((len(frames), number), dtype=bool), np.zeros((len(frames), number), dtype=bool)
     notes = []
@@ -67,6 +67,7 @@ def gathered(own: Proprioception, frames: Sequence[Sequence[Sighting]], table: T
         if late and known[0].held and own.closed[: late + 1].all():  # it was in the hand before it came into sight
             location[:late, column] = _carried_back(own, known[0].centre, late)
         extent[:, column] = [each.extent for each in filled]
+        yaw[:, column] = [each.yaw for each in filled]
         visible[late:, column] = [each.visible for each in known]
         visible[:late, column] = late < EARLY  # it was looked at twice before it was believed
         held[late:, column] = [each.held for each in known]
@@ -94,6 +95,7 @@ def gathered(own: Proprioception, frames: Sequence[Sequence[Sighting]], table: T
             extent=read_only(extent),
             gripper_opening=own.opening,
             wrist_force=own.wrist_force,
+            yaw=read_only(yaw),
             features=features,
         ),
         tuple(notes),

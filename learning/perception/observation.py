@@ -27,6 +27,7 @@ class Observation:
             (F, N, 3) [m]; None where only points are known.
         gripper_opening: Measured gap between the fingers, (F,) [m]; None where it is not felt.
         wrist_force: Force felt at the wrist, axes of the world, (F, 3) [N]; None where it is not felt.
+        yaw: Direction of each object's length in the world, 0 .. π, (F, N) [rad]; None where it was not kept.
         features: Measured values of further feature spaces by their name, (F, N, m); NaN where they are not known.
     """
 
@@ -41,4 +42,5 @@ class Observation:
     extent: FloatArray | None = None
     gripper_opening: FloatArray | None = None
     wrist_force: FloatArray | None = None
+    yaw: FloatArray | None = None
     features: Mapping[str, FloatArray] = field(default_factory=dict)

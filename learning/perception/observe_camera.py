@@ -13,7 +13,7 @@ from learning.perception.camera_observation import Perceived, gathered
 from learning.perception.observation import Observation
 from learning.perception.proprioception import Proprioception, frames_of, proprioception_at, proprioception_of
 from learning.perception.robot_eye import HEIGHT, WIDTH, Look, RobotEye
-from learning.perception.table import find_table
+from learning.perception.table import Table, find_table
 from learning.perception.tracker import Tracker
 from robots.pose import FloatArray, Pose
 from twin.scene_spec import SceneSpec
@@ -140,12 +140,25 @@ def _perceive(
     for number, (body, objects) in enumerate(zip(own.bodies, shown, strict=True)):
         look: Look = eye.look(body, objects, rng)
         if tracker is None:
-            table = find_table([look], eye.model, rng)
+            table = _table(eye, look, rng)
             tracker = Tracker(table, eye.model, rng, apart)
         sightings.append(tracker.step(look, own.tool[number], bool(own.closed[number]), float(own.opening[number])))
     if tracker is None:
         raise PerceptionError("there are no pictures to look at: the demo holds no state")
     return gathered(own, sightings, table)
+
+
+def _table(eye: RobotEye, look: Look, rng: np.random.Generator) -> Table:
+    """The table, as it was found when the eye first looked from where it is: tables stand still."""
+    here = look.pose_camera_in_world
+    if eye.table is not None:
+        there, table = eye.table
+        if np.array_equal(here.position, there.position) and np.array_equal(
+            here.orientation_xyzw, there.orientation_xyzw
+        ):
+            return table
+    eye.table = here, find_table([look], eye.model, rng)
+    return eye.table[1]
 
 
 def _robot(spec: SceneSpec) -> "RobotModel":

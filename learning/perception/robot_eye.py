@@ -17,6 +17,7 @@ from twin.scene_spec import SceneSpec
 from twin.state import ObjectState
 
 if TYPE_CHECKING:
+    from learning.perception.table import Table
     from twin.camera import CameraModel, Renderer, SceneGeometry
     from twin.scene_view import RobotState
 
@@ -52,6 +53,7 @@ class RobotEye:
     Attributes:
         model: Size and intrinsics of the camera.
         name: Its name on the robot.
+        table: Where the camera was when somebody found the table with it, and that table; None before.
     """
 
     def __init__(
@@ -89,6 +91,7 @@ class RobotEye:
         self._picture = make_renderer(self._view.geometry, self.model)
         self._body = _body_renderer(robot, SceneGeometry(links), self.model)
         self._last: tuple[FloatArray, Pose, NDArray[np.float32]] | None = None
+        self.table: tuple[Pose, Table] | None = None
 
     def look(self, robot: "RobotState", objects: Iterable[ObjectState], rng: np.random.Generator) -> Look:
         """Take a picture.

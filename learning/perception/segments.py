@@ -55,7 +55,7 @@ class Piece:
     @property
     def colour(self) -> FloatArray:
         """Red, green, blue of its surface, (3,) of 255; of what a hand may hide, as if nothing did."""
-        return surface_colour(self.colours, self.points[:, 2] if self.beside_robot else None)
+        return surface_colour(self.colours, self.points[:, 2], hidden=self.beside_robot)
 
 
 @dataclass(frozen=True, slots=True)

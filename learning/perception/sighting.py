@@ -22,6 +22,7 @@ class Sighting:
         piece: Its pixels, where any were seen.
         whole: Whether they are all that can be seen of it from there.
         view: The table from where the camera was.
+        yaw: Direction of its length in the world, 0 .. π [rad].
     """
 
     id: int
@@ -34,3 +35,4 @@ class Sighting:
     piece: Piece | None
     whole: bool
     view: TableView | None
+    yaw: float = 0.0

@@ -15,23 +15,30 @@ DARK = 24.0
 """Added to the sum of a pixel's channels before brightness is compared: noise of three channels."""
 WELL_LIT = 0.6
 """Part of the pixels of the main colour that are darker than the well-lit ones."""
+BY_HEIGHT = 0.5
+"""How much of a pixel's weight is that of its height where nothing is hidden: a lid seen from above has half of the
+pixels and few of the heights, and the base of a stapler the other way round."""
 MOST_PIXELS = 200
 """About so many pixels are looked at."""
 
 
-def surface_colour(colours: FloatArray, heights: FloatArray | None = None) -> FloatArray:
+def surface_colour(colours: FloatArray, heights: FloatArray | None = None, *, hidden: bool = False) -> FloatArray:
     """Red, green, blue, (3,) of 255.
 
-    The main colour is that of most pixels. Of what a hand hides a part of, it is that of most heights: a hand hides the
-    body and leaves the lid.
+    The main colour is that of most pixels and heights. Of what a hand hides a part of, it is that of most heights: a
+    hand hides the body and leaves the lid.
 
     Args:
         colours: Pixels of one thing, at least one, (n, 3) of 255.
-        heights: Their heights, (n,) [m], where a part of the thing is hidden; None where nothing is.
+        heights: Their heights, (n,) [m]; None where they are not known: pixels count alike.
+        hidden: Whether a part of the thing is hidden.
     """
     step = max(len(colours) // MOST_PIXELS, 1)
     colours = colours[::step]
-    weights = np.ones(len(colours)) if heights is None else height_weights(heights[::step])
+    weights = np.ones(len(colours))
+    if heights is not None:
+        share = 1.0 if hidden else BY_HEIGHT
+        weights = (1.0 - share) * weights + share * height_weights(heights[::step])
     total = colours.sum(axis=1) + 1.0
     chroma = colours[:, :2] / total[:, None]
     typical = np.array([_median(chroma[:, 0], weights), _median(chroma[:, 1], weights)])

@@ -191,5 +191,5 @@ class Tracker:
         colour = track.colour if coloured else None
         return Sighting(
             track.id, track.centre, track.box.extent, visible, track.held, colour, track.exposure, piece, whole,
-            self._view,
+            self._view, track.box.yaw,
         )  # fmt: skip
