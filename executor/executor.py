@@ -1,5 +1,6 @@
 """`Executor`: from a sentence to a changed world, checked by looking."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,9 +10,11 @@ from executor.errors import InputError
 from executor.execution.answer import Answer, OnAmbiguous
 from executor.execution.doer import Doer, doer_for
 from executor.execution.history import History
+from executor.execution.spelling import Spelling, slips_put_right, spellings_of, taken_words
 from executor.execution.steps import Step, steps_of
 from executor.execution.understood import Understood
-from executor.report import ExecutionReport, joined, report_of
+from executor.report import ExecutionReport, joined, report_of, spelt
+from learning.grounding.ngrams import with_words, words_of
 
 if TYPE_CHECKING:
     from learning import Knowledge
@@ -55,7 +58,7 @@ class Executor:
         self.history = History(world)
         self.last: int | None = None
         self._deeds: list[tuple[Understood, object]] = []
-        self._doer = doer_for(world, knowledge, self.rng, self.on_ambiguous)
+        self._doer = doer_for(world, knowledge, self.rng, self.on_ambiguous, clear)
 
     def execute(self, sentence: str, *, plan_only: bool = False, choice: int | None = None) -> ExecutionReport:
         """Understand a sentence in the scene as it is seen, and do what it says.
@@ -72,7 +75,7 @@ class Executor:
         Raises:
             InputError: The sentence holds no word.
         """
-        doer, (steps, view) = self._doer, self._understood(sentence, choice)
+        doer, (steps, view, spelling) = self._doer, self._understood(sentence, choice)
         trouble = next((step for step in steps if not self._can_act(step.understood)), None)
         if trouble is not None:
             report = report_of(trouble.understood, sentence)
@@ -80,7 +83,7 @@ class Executor:
             report = doer.plan(steps[0].understood, view, sentence)
         else:
             report = self._carried_out(sentence, steps, view, choice)
-        return replace(report, durations=dict(doer.stopwatch.seconds))
+        return spelt(replace(report, durations=dict(doer.stopwatch.seconds)), spelling)
 
     def preview(self, sentence: str, choice: int | None = None) -> ExecutionReport:
         """Understand a sentence in the scene as it is seen, and plan all of its steps; nothing moves.
@@ -94,21 +97,29 @@ class Executor:
         Raises:
             InputError: The sentence holds no word.
         """
-        doer, (steps, view) = self._doer, self._understood(sentence, choice)
+        steps, view, spelling = self._understood(sentence, choice)
+        return spelt(self._previewed(sentence, steps, view), spelling)
+
+    def _previewed(self, sentence: str, steps: list[Step], view: object) -> ExecutionReport:
         trouble = next((step for step in steps if not self._can_act(step.understood)), None)
         if trouble is not None:
             return report_of(trouble.understood, sentence)
         reports: list[ExecutionReport] = []
         for step in steps:
             said = sentence if len(steps) == 1 else " ".join(step.words)
-            reports.append(doer.plan(step.understood, view, said))
+            reports.append(self._doer.plan(step.understood, view, said))
             if not reports[-1].success:
                 break
-            view = doer.imagine(view, step.understood)
+            view = self._doer.imagine(view, step.understood)
         if len(reports) == 1:
             return reports[0]
         whole = _together(sentence, reports, len(steps))
         return replace(whole, reason=f"these are the {len(steps)} steps") if whole.success else whole
+
+    def go_on_from(self, before: "Executor") -> None:
+        """Take over what another one, with other knowledge, has seen and done in the same world."""
+        self.history, self.last = before.history, before.last
+        self._doer.go_on_from(before.doer)
 
     @property
     def doer(self) -> Doer[Any]:
@@ -128,8 +139,8 @@ class Executor:
         self._doer.resume()
         return moment.sentence
 
-    def _understood(self, sentence: str, choice: int | None) -> tuple[list[Step], object]:
-        """The steps of a sentence, and how the scene looks in which they were understood.
+    def _understood(self, sentence: str, choice: int | None) -> tuple[list[Step], object, tuple[Spelling, ...]]:
+        """The steps of a sentence, the view they were understood in, and how its words that were never heard are taken.
 
         Raises:
             InputError: The sentence holds no word.
@@ -138,7 +149,23 @@ class Executor:
             raise InputError(f"the sentence {sentence!r} holds no word; say what to do")
         self._doer.stopwatch.restart()
         view = self._doer.look()
-        return steps_of(sentence, self._doer, view, self.last, choice), view
+
+        def read(taken: Mapping[str, str]) -> list[Step]:
+            return steps_of(with_words(sentence, taken), self._doer, view, self.last, choice)
+
+        steps = read({})
+        strange = [word for step in steps for word in step.understood.unknown if not self._doer.knows(word)]
+        spelling = spellings_of(strange, self.knowledge)
+        if taken := taken_words(spelling):
+            steps = read(taken)
+        for each in spelling if len(taken) > 1 else ():  # "then" is no slip for "the" where it stands between steps
+            if not each.joins:
+                continue
+            fewer = tuple(other for other in spelling if other is not each)
+            again = read(taken_words(fewer))
+            if all(self._can_act(step.understood) for step in again):
+                steps, spelling = again, fewer
+        return steps, view, (*spelling, *slips_put_right(words_of(sentence), self.knowledge))
 
     def _can_act(self, understood: Understood) -> bool:
         return understood.clear or (self.clear and bool(understood.blocked) and understood.answer is Answer.IMPOSSIBLE)

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from executor.execution.answer import Answer
-from executor.execution.understood import Option, Referent, Understood
+from executor.execution.spelling import Spelling, Suggestion, suggestions
+from executor.execution.understood import Option, Referent, Understood, offer
 from learning.grammar.rcl import RclNode
 
 if TYPE_CHECKING:
@@ -57,11 +58,12 @@ class ExecutionReport:
         answer: Which kind of answer this is.
         explanation: What was understood, which words were not, how it went or why it was refused.
         reason: Only the last of that: how it went or why not.
-        words: The words; positions of tree and referents count them from 1.
+        words: The words as they were taken; positions of tree and referents count them from 1.
         tree: The RCL tree, None where nothing was understood.
         referents: What the words speak of, with track numbers.
         options: What to choose between, where the answer is a question.
-        unknown: Words that were never heard.
+        unknown: Words that were never heard, or not understood yet.
+        spelling: Words that were never heard and look like heard ones, with what they were taken as or may be.
         goal: The last goal that was tried, or None.
         goals: All goals of the sentence, in order.
         plan: The last motion plan, or None.
@@ -82,6 +84,7 @@ class ExecutionReport:
     referents: tuple[Referent, ...] = ()
     options: tuple[Option, ...] = ()
     unknown: tuple[str, ...] = ()
+    spelling: tuple[Spelling, ...] = ()
     goal: "Goal | None" = None
     goals: "tuple[Goal, ...]" = ()
     plan: "Plan | None" = None
@@ -100,6 +103,11 @@ class ExecutionReport:
     def refused(self) -> bool:
         """Whether nothing was moved, because the sentence or the scene does not allow it."""
         return not self.answer.moved and not self.answer.good
+
+    @property
+    def suggested(self) -> tuple[Suggestion, ...]:
+        """What may have been meant, where a word was never heard and looks like several that were."""
+        return suggestions(self.sentence, self.spelling) if self.answer is Answer.UNKNOWN_WORD else ()
 
     def text(self) -> str:
         """The whole report for people: tree, referents, plan, and how it went."""
@@ -136,6 +144,7 @@ class ExecutionReport:
             ],
             "options": [{"thing": each.thing, "name": each.name} for each in self.options],
             "unknown": list(self.unknown),
+            "spelling": [each.to_dict() for each in self.spelling],
             "goal": goal,
             "plan": list(self.plan.lines()) if self.plan else None,
             "attempts": self.attempts,
@@ -173,6 +182,21 @@ def answer_of(outcome: Outcome | None) -> Answer:
 def told(report: ExecutionReport, answer: Answer, reason: str) -> ExecutionReport:
     """A report with how it ended, and why."""
     return replace(report, answer=answer, reason=reason, explanation=joined(report.explanation, reason))
+
+
+def spelt(report: ExecutionReport, spelling: "tuple[Spelling, ...]") -> ExecutionReport:
+    """A report that says how words that were never heard were taken, or asks what they may be."""
+    if not spelling:
+        return report
+    taken = joined(*(each.told() for each in spelling if each.taken is not None))
+    report = replace(report, spelling=spelling)
+    reason = report.reason
+    if report.answer is Answer.UNKNOWN_WORD:
+        asked = [each for each in spelling if each.taken is None]
+        strange = tuple(word for word in report.unknown if word not in {each.word for each in asked})
+        otherwise = offer(strange) if strange else "if not, show me: record a demo and say it"
+        reason = joined(*(each.told() for each in asked), otherwise) if asked else reason
+    return replace(report, reason=joined(taken, reason), explanation=joined(taken, report.explanation))
 
 
 def joined(*parts: str) -> str:

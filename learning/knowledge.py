@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections import defaultdict
+from collections import defaultdict, deque
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,8 @@ LEAST_SIGHTINGS = 20
 """Sightings of a shape before its never bearing anything means that it cannot."""
 LEAST_BEARING = 0.005
 """Share of sightings with something on top below which a shape is taken not to bear anything (noise aside)."""
-
+MOST_LESSONS = 500
+"""Demos that are remembered by their fingerprints."""
 
 Language = LanguageLearner | ReadingLearner
 METHODS: dict[str, type[LanguageLearner] | type[ReadingLearner]] = {
@@ -47,6 +48,7 @@ class Knowledge:
         sentences: Sentences heard.
         seen: Sightings of each shape concept.
         bearing: Sightings of each shape concept with something on top.
+        lessons: Fingerprints of demos that were learned one at a time, so that none is learned twice: the latest ones.
     """
 
     def __init__(self, spaces: SpaceSet | str = BOARD, method: str = ReadingLearner.method) -> None:
@@ -67,6 +69,7 @@ class Knowledge:
         self.sentences = 0
         self.seen: defaultdict[int, float] = defaultdict(float)
         self.bearing: defaultdict[int, float] = defaultdict(float)
+        self.lessons: deque[str] = deque(maxlen=MOST_LESSONS)
         self._table: tuple[dict[int, ActionGraphlet], ActionTable] | None = None
 
     def action_table(self) -> ActionTable:
@@ -140,6 +143,7 @@ class Knowledge:
             "language": self.language.to_json(),
             "table_language": self.table_language.to_json(),
             "phrasings": self.phrasings.to_json(),
+            "lessons": list(self.lessons),
         }
 
     @classmethod
@@ -182,6 +186,8 @@ class Knowledge:
             knowledge.demos = int(saved_count(data["demos"], "number of demos"))
             field = "sentences"
             knowledge.sentences = int(saved_count(data["sentences"], "number of sentences"))
+            field = "lessons"
+            knowledge.lessons.extend(str(each) for each in data.get("lessons", ()))
         except KnowledgeError as error:
             raise KnowledgeError(f"{source}: {error}") from None
         except (KeyError, TypeError, ValueError, AttributeError) as error:

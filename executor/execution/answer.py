@@ -24,7 +24,7 @@ class Answer(StrEnum):
     AMBIGUOUS = "ambiguous"
     """Several things or places fit the words: a question is asked."""
     UNKNOWN_WORD = "unknown-word"
-    """A word was never heard: it is named, and could be shown."""
+    """A word was never heard, or not understood yet: it is named, and could be shown."""
     IMPOSSIBLE = "impossible"
     """The command was understood and cannot be carried out here: out of reach, blocked, nothing to hold, no room."""
 

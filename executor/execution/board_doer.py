@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from executor.errors import RefusalError
 from executor.execution.answer import Answer, OnAmbiguous
 from executor.execution.board_understanding import BoardUnderstanding, BoardView
 from executor.execution.clearing import carrying_action, put_aside
+from executor.execution.doer import Doer
 from executor.execution.marking import Deed, unlearn
 from executor.execution.understood import Understood
 from executor.goal_runner import GoalRunner
@@ -146,6 +147,12 @@ class BoardDoer:
     def resume(self) -> None:
         """Take over the world as it is."""
         self.runner.motion.resume()
+
+    def go_on_from(self, before: Doer[Any]) -> None:
+        """See `Doer`: every look at the board is a new one."""
+
+    def close(self) -> None:
+        """See `Doer`: there is nothing to free."""
 
     def _clear(self, report: ExecutionReport, understood: Understood, sight: Sight) -> tuple[ExecutionReport, bool]:
         """Put aside what is in the way, one block after the other."""

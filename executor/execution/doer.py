@@ -77,11 +77,28 @@ class Doer(Protocol[View]):
     def resume(self) -> None:
         """Take over the world as it is, after it was put back to an earlier moment."""
 
+    def go_on_from(self, before: "Doer[Any]") -> None:
+        """Take over what another one, with other knowledge, has seen in the same world; that one is not used again."""
+
+    def close(self) -> None:
+        """Free what it looks with; a later look makes it anew."""
+
 
 def doer_for(
-    world: "World", knowledge: "Knowledge", rng: np.random.Generator, on_ambiguous: OnAmbiguous = OnAmbiguous.ASK
+    world: "World",
+    knowledge: "Knowledge",
+    rng: np.random.Generator,
+    on_ambiguous: OnAmbiguous = OnAmbiguous.ASK,
+    clear: bool = False,
 ) -> Doer[Any]:
     """Give the doer for a robot in its world.
+
+    Args:
+        world: The world.
+        knowledge: What was learned.
+        rng: Source of the noise of looking and of the planners' chance.
+        on_ambiguous: What to do where several things fit.
+        clear: Whether what is found to be in the way while a step is planned is put aside.
 
     Raises:
         InputError: The world is none that sentences are carried out in yet, or the knowledge was learned on another
@@ -95,7 +112,7 @@ def doer_for(
     if world.spec.kind == "table" and world.robot.cameras:
         from executor.tables.table_doer import TableDoer
 
-        return TableDoer(world, knowledge, rng, on_ambiguous)
+        return TableDoer(world, knowledge, rng, on_ambiguous, clear)
     raise InputError(
         "sentences are carried out on the board by an arm of three joints, and at tables by robots with a camera, not "
         f"by {world.robot.name} in scene {world.spec.name!r}: use a board scene with three_dof, tabletop, or ordering"

@@ -23,6 +23,7 @@ def get_ready(executor: "Executor") -> None:
     view = executor.doer.look()
     world = executor.world
     if world.spec.kind != "table":
+        executor.doer.understand(("a",), view, None)
         return
     for tongue in executor.knowledge.table_language.tongues.values():  # any word will do
         executor.doer.understand(tuple(tongue.grounding.counts)[:1], view, None)

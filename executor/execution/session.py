@@ -50,22 +50,26 @@ class Session:
             return "there is nothing to undo" if undone is None else f"undone: {undone}"
         if word == WRONG:
             return self.mark_wrong()
-        if word.isdecimal() and self.last is not None and self.last.answer is Answer.AMBIGUOUS:
+        if word.isdecimal() and self.last is not None and (self.last.answer is Answer.AMBIGUOUS or self.last.suggested):
             return self._chosen(int(word), self.last)
         return self._told(self.executor.execute(line))
 
     def _chosen(self, number: int, asked: ExecutionReport) -> str:
-        if not 1 <= number <= len(asked.options):
-            return f"there is no choice {number}; say 1 to {len(asked.options)}"
+        choices = asked.suggested or asked.options
+        if not 1 <= number <= len(choices):
+            return f"there is no choice {number}; say 1 to {len(choices)}"
+        if asked.suggested:
+            return self._told(self.executor.execute(asked.suggested[number - 1].sentence))
         return self._told(self.executor.execute(asked.sentence, choice=asked.options[number - 1].thing))
 
     def _told(self, report: ExecutionReport) -> str:
         self.last = report
         self._on_report(report)
-        lines = [f"{report.answer}: {report.reason}"]
+        names = [each.word for each in report.suggested]
         if report.answer is Answer.AMBIGUOUS:
-            lines += [f"  {number}. {option.name}" for number, option in enumerate(report.options, start=1)]
-        return "\n".join(lines)
+            names = [option.name for option in report.options]
+        lines = [f"{report.answer}: {report.reason}"]
+        return "\n".join(lines + [f"  {number}. {name}" for number, name in enumerate(names, start=1)])
 
     def mark_wrong(self) -> str:
         """Mark what was done last as wrong, in the knowledge in use and its file, and undo it; tells how that went."""

@@ -56,7 +56,7 @@ class Understood:
         goals: What to do, in order.
         referents: What the words speak of.
         options: What to choose between, where the answer is `AMBIGUOUS`.
-        unknown: Words that were never heard.
+        unknown: Words that were never heard, or not understood yet.
         blocked: Track numbers of what is in the way, the first to be moved first; `goals` hold once it is gone.
         share: How sure the reading is, 0..1.
     """
@@ -88,6 +88,12 @@ def offer(unknown: tuple[str, ...]) -> str:
     """Name words that were never heard, and offer to be shown."""
     them = "it" if len(unknown) == 1 else "them"
     return f"I never heard {quoted(unknown)}; show me: record a demo and say {them}"
+
+
+def offer_again(word: str, heard: float) -> str:
+    """Name a word that was heard and not understood, and offer to be shown again."""
+    times = "once" if heard <= 1.0 else f"{heard:.0f} times"
+    return f"I heard “{word}” {times} and do not understand it yet; show me again: record a demo and say it"
 
 
 def question(said: str, options: tuple[Option, ...]) -> str:

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from executor.execution.spelling import taken_words
 from executor.execution.steps import marked_words
-from executor.talk.lexicon import entry_of
-from executor.talk.word_kinds import WordKind, kind_of
+from executor.lexicon import entry_of
+from executor.word_kinds import WordKind, kind_of
 
 if TYPE_CHECKING:
     from executor.report import ExecutionReport
@@ -29,22 +30,26 @@ class SaidWord:
 
 
 def words_of_report(report: "ExecutionReport", knowledge: "Knowledge") -> list[SaidWord]:
-    """The words of a command as they were read; those that no reading uses as they are known by themselves."""
-    words = marked_words(report.sentence)[0]
+    """The words of a command as they were read; those that no reading uses as they are known by themselves.
+
+    Words that were taken as others mean what those mean.
+    """
+    typed, taken = marked_words(report.sentence)[0], taken_words(report.spelling)
+    words = tuple(taken.get(word, word) for word in typed)
     meant = _meant(report, words)
     unknown = set(report.unknown)
     read = report.tree is not None or any(step.tree is not None for step in report.steps)
     found = []
-    for position, word in enumerate(words):
+    for position, (text, word) in enumerate(zip(typed, words, strict=True)):
         if word in unknown:
-            found.append(SaidWord(word, WordKind.UNKNOWN))
+            found.append(SaidWord(text, entry_of(knowledge, word).kind))
         elif position in meant:
-            found.append(SaidWord(word, kind_of(meant[position]), str(meant[position])))
+            found.append(SaidWord(text, kind_of(meant[position]), str(meant[position])))
         elif read and not unknown:
-            found.append(SaidWord(word, WordKind.FUNCTION))
+            found.append(SaidWord(text, WordKind.FUNCTION))
         else:
             entry = entry_of(knowledge, word)
-            found.append(SaidWord(word, entry.kind, "" if entry.concept is None else str(entry.concept)))
+            found.append(SaidWord(text, entry.kind, "" if entry.concept is None else str(entry.concept)))
     return found
 
 

@@ -18,7 +18,9 @@ class Answered:
         kind: Value of an `Answer`, or `undone`.
         text: The same in plain words.
         options: What to choose between, by track number and name.
-        unknown: Words that were never heard.
+        unknown: Words that were never heard, or not understood yet.
+        note: How words that were never heard were taken; `text` says it, too.
+        spellings: What may have been meant instead of a word that was never heard: word and sentence.
         can_be_wrong: Whether something was done that may be marked as wrong.
     """
 
@@ -26,6 +28,8 @@ class Answered:
     text: str
     options: tuple[tuple[int, str], ...] = ()
     unknown: tuple[str, ...] = ()
+    note: str = ""
+    spellings: tuple[tuple[str, str], ...] = ()
     can_be_wrong: bool = False
 
 
@@ -37,11 +41,13 @@ class Lesson:
         demo: Its name.
         sentences: Sentences heard with it.
         error: Why nothing was learned; empty if something was.
+        before: Whether it was learned before, so that there is nothing new in it.
     """
 
     demo: str
     sentences: int = 0
     error: str = ""
+    before: bool = False
 
 
 @dataclass(frozen=True, slots=True)

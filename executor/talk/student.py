@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import traceback
+from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from learning import Knowledge
     from learning.learner import Lesson
 
+FINGERPRINT = 12
+"""Hexadecimal digits by which a demo is known again."""
 POLITENESS = 2
 """How much the process gives way to the control loop (nice)."""
 _EARLY = (
@@ -86,13 +89,16 @@ class Student:
             self._process.wait()
 
 
-def learn_demo(demo: Path, path: Path, seed: int) -> tuple["Knowledge", "Lesson"]:
-    """Learn one demo into a knowledge file; nobody else changes it meanwhile.
+def learn_demo(demo: Path, path: Path, seed: int) -> tuple["Knowledge", "Lesson | None"]:
+    """Learn one demo into a knowledge file, once; nobody else changes it meanwhile.
 
     Args:
         demo: The demo.
         path: The file; made if it does not exist.
         seed: Seed of the noise of perception.
+
+    Returns:
+        What is known then, and what was learned: None where the same demo was learned before.
 
     Raises:
         ShowtellError: The demo or the knowledge cannot be read, or nothing can be learned from it; says why.
@@ -104,8 +110,12 @@ def learn_demo(demo: Path, path: Path, seed: int) -> tuple["Knowledge", "Lesson"
     path.parent.mkdir(parents=True, exist_ok=True)
     with locked(path):
         learner = Learner(Knowledge.load(path) if path.exists() else None, seed=seed)
+        fingerprint = sha256(demo.read_bytes()).hexdigest()[:FINGERPRINT]
+        if fingerprint in learner.knowledge.lessons:
+            return learner.knowledge, None
         lesson = learner.observe(open_demo(demo))
         learner.settle()
+        learner.knowledge.lessons.append(fingerprint)
         learner.knowledge.save(path)
     return learner.knowledge, lesson
 
@@ -142,7 +152,8 @@ def _answer(request: dict[str, str], path: Path, seed: int, kind: "type[Knowledg
         if demo is None:
             return answer | {"knowledge": told_knowledge(kind.load(path))}
         knowledge, lesson = learn_demo(Path(demo), path, seed)
-        return answer | {"knowledge": told_knowledge(knowledge), "sentences": lesson.sentences}
+        told = answer | {"knowledge": told_knowledge(knowledge)}
+        return told | ({"before": True} if lesson is None else {"sentences": lesson.sentences})
     except (ShowtellError, OSError) as error:
         return answer | {"error": str(error)}
     except Exception as error:  # whatever is wrong with one demo, the next can be learned

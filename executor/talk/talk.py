@@ -2,16 +2,20 @@
 
 from collections import deque
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from executor.errors import InputError
 from executor.execution.answer import Answer
+from executor.execution.readiness import get_ready
 from executor.execution.session import Session
 from executor.executor import Executor
 from executor.knowledge_fit import check_fit
-from executor.report import ExecutionReport, told
+from executor.report import ExecutionReport, joined, told
 from executor.talk.marks import Mark, marks_of
 from executor.talk.plan_words import line_of, plan_lines
 from executor.talk.said_words import words_of_report
@@ -19,6 +23,7 @@ from executor.talk.state import Answered, Lesson, TalkState
 from executor.talk.student import Student
 from executor.talk.told_knowledge import told_knowledge
 from learning import Knowledge
+from robots.errors import ShowtellError
 from teleop.errors import TeleopError
 from teleop.loop_channel import ChannelClosedError
 from teleop.loop_extension import LentStopError
@@ -28,6 +33,10 @@ if TYPE_CHECKING:
 
 LISTEN_EVERY = 12
 """Control steps between two looks at what the student has to say: 20 Hz."""
+REST = 10
+"""Such looks in a row at which the robot stood still, after which a moment may be used: half a second."""
+AT_REST = 1e-3
+"""A robot whose joints all move slower than this stands still [rad/s, m/s]."""
 KNOWS_NOTHING = "I have learned nothing yet: record a demo, say what you do, and have it learned"
 
 
@@ -44,7 +53,7 @@ class Talk:
     """
 
     def __init__(self, desk: "Desk", knowledge: Path, seed: int) -> None:
-        """Read what was learned, and look at the scene once so that the first command is answered at once.
+        """Read what was learned, and load all that commands need, so that the first one is answered at once.
 
         Raises:
             KnowledgeError: The file is no knowledge.
@@ -59,9 +68,11 @@ class Talk:
         self._told_knowledge = {} if self._knowledge is None else told_knowledge(self._knowledge)
         self.state = TalkState(file=knowledge.name)
         self._world, self._executor = desk.deck.world, self._made()
-        if self._executor is not None:
-            self._executor.preview("?a")  # what is compiled or made at first use is there before the first command
-        self._student = Student(knowledge, seed)
+        self._still, self._ready = 0, True
+        self._student = Student(knowledge, seed)  # gets ready while we do
+        with suppress(ShowtellError):  # whatever is wrong is told with the first command
+            # Before the loop runs: what is loaded meanwhile would hold it up.
+            get_ready(self._executor or Executor(self._world, Knowledge(self._world.spec.kind)))
 
     # What the control loop calls
 
@@ -79,6 +90,8 @@ class Talk:
             self._show(phase="idle", answer=None)
         if self._wishes:
             self._obey(self._wishes.popleft())
+        elif not self._ready and self._steps % LISTEN_EVERY == 0:
+            self._use_rest()
         if self._told_knowledge:
             message, self._told_knowledge = self._told_knowledge, {}
             self._desk.tell("K", message)
@@ -86,8 +99,19 @@ class Talk:
             self._untold = not self._desk.tell("T", self.state.to_dict())
 
     def close(self) -> None:
-        """End the student."""
+        """End the student, and free what looks at the scene."""
         self._student.close()
+        if self._executor is not None:
+            self._executor.doer.close()
+
+    def _use_rest(self) -> None:
+        """Look at a new scene while nobody drives, so that the next command need not."""
+        resting = self._desk.deck.mode == "idle" and float(np.abs(self._world.state().dq).max()) < AT_REST
+        self._still = self._still + 1 if resting else 0
+        if self._executor is not None and self._still >= REST:
+            self._ready = True
+            with suppress(ShowtellError):
+                get_ready(self._executor)
 
     # What pages wish
 
@@ -158,6 +182,8 @@ class Talk:
                 report.reason,
                 options=tuple((option.thing, option.name) for option in report.options),
                 unknown=report.unknown,
+                note=joined(*(each.told() for each in report.spelling if each.taken is not None)),
+                spellings=tuple((each.word, each.sentence) for each in report.suggested),
                 can_be_wrong=report.answer.moved and report.answer is not Answer.STOPPED,
             ),
             undo=history,
@@ -201,6 +227,8 @@ class Talk:
     def _learn(self, name: str) -> None:
         """Have the demo that waits learned, or one of the folder."""
         deck = self._desk.deck
+        if self.state.learning and name in ("", self.state.learning) and deck.mode != "review":
+            return  # a click too many
         if self.state.learning:
             raise InputError("another demo is being learned: wait a moment")
         path = (
@@ -232,7 +260,10 @@ class Talk:
             self._knowledge = Knowledge.load(self._path)
             self._told_knowledge = answer["knowledge"]
             self._refresh(same_world=True)
-            if answer["demo"]:
+            if answer.get("before"):
+                self._show(learning="", lesson=Lesson(answer["demo"], before=True))
+                self._desk.notice("info", f"{answer['demo']} was learned before")
+            elif answer["demo"]:
                 lesson = Lesson(answer["demo"], sentences=answer["sentences"])
                 self._show(learning="", lesson=lesson, answer=None, words=(), plan=(), marks=[])
                 self._desk.notice("info", f"{answer['demo']} was learned")
@@ -245,7 +276,11 @@ class Talk:
         before = self._executor
         self._world, self._executor = world, self._made()
         if self._executor is not None and same_world and before is not None and before.world is world:
-            self._executor.history, self._executor.last = before.history, before.last
+            self._executor.go_on_from(before)
+        else:
+            self._still, self._ready = 0, False
+            if before is not None:
+                before.doer.close()
         if not same_world:
             self._last = None
             self.state = replace(self.state, undo=0, plan=(), marks=[], words=(), done=0, sentence="", choice=None)

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from executor.knowledge_page import knowledge_sections
 from executor.learned_tables import rule_rows
-from executor.talk.lexicon import Entry, lexicon
-from executor.talk.word_kinds import WordKind
+from executor.lexicon import Entry, lexicon
+from executor.word_kinds import WordKind
 
 if TYPE_CHECKING:
     from learning import Knowledge

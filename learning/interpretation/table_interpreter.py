@@ -6,6 +6,7 @@ import numpy as np
 
 from learning.concept_id import REFERENCE, Concept
 from learning.grammar.rcl import RclNode
+from learning.grounding.ngrams import ngrams_of
 from learning.grounding.scripts import script_of
 from learning.grounding.table_scene import PLACE_SPACE, TableRecord, TableScene, still_record
 from learning.grounding.tongue import Tongue
@@ -47,6 +48,7 @@ class TableReading:
         explanation: What was understood, or why it was not.
         unheeded: Words that surely name what a thing is like, and that the tree passes over.
         absent: Words for things that nothing here is, among those that were understood and those passed over.
+        unlearned: Words that were heard and not understood yet, neither alone nor with those beside them.
     """
 
     words: tuple[str, ...]
@@ -58,6 +60,7 @@ class TableReading:
     explanation: str
     unheeded: tuple[str, ...] = ()
     absent: tuple[str, ...] = ()
+    unlearned: tuple[str, ...] = ()
 
     @property
     def understood(self) -> bool:
@@ -103,7 +106,7 @@ class TableInterpreter:
         if tree is None:
             why = "nothing of the sentence was understood"
             why += f"; never heard {listed(unknown)}" if unknown else ""
-            return TableReading(words, None, None, (), None, unknown, why)
+            return TableReading(words, None, None, (), None, unknown, why, unlearned=unlearned_words(tongue, words))
         denotation = self._denotation(observation, held)
         meant = denotation.understand(tree)
         things = _indices(meant.things)
@@ -126,6 +129,7 @@ class TableInterpreter:
             "",
             tuple(words[node.first - 1] for node in passed),
             tuple(dict.fromkeys(absent_phrases(words, [*tree.nodes(), *passed], denotation))),
+            unlearned_words(tongue, words),
         )
         return replace(reading, explanation=self._said(reading, meant))
 
@@ -155,6 +159,8 @@ class TableInterpreter:
         parts = [f"understood {', '.join(named)}"]
         if reading.unknown:
             parts.append(f"never heard {listed(reading.unknown)}")
+        if reading.unlearned:
+            parts.append(f"not understood yet {listed(reading.unlearned)}")
         if reading.action is None:
             parts.append("no word says what to do")
         elif not reading.things:
@@ -177,12 +183,23 @@ def held_thing(observation: Observation) -> int | None:
 
 def unknown_words(tongue: Tongue, words: tuple[str, ...]) -> tuple[str, ...]:
     """Words of which no piece was ever heard."""
-    found = []
-    for word in dict.fromkeys(words):
-        pieces, _ = tongue.joined.split((word,))
-        if not any(tongue.grounding.total(piece) > 0.0 for piece in pieces):
-            found.append(word)
-    return tuple(found)
+    return tuple(word for word in dict.fromkeys(words) if not _heard(tongue, word))
+
+
+def unlearned_words(tongue: Tongue, words: tuple[str, ...]) -> tuple[str, ...]:
+    """Words that were heard and of which no piece was ever read, neither alone nor with those beside it."""
+    pieces, origin = tongue.joined.split(words)
+    read: set[int] = set()
+    for ngram, spans in ngrams_of(pieces).items():
+        if tongue.grounding.total(ngram) > 0.0:
+            read.update(origin[at] for first, after in spans for at in range(first, after))
+    left = dict.fromkeys(word for at, word in enumerate(words) if at not in read)
+    return tuple(word for word in left if _heard(tongue, word))
+
+
+def _heard(tongue: Tongue, word: str) -> bool:
+    pieces = (word, *tongue.joined.pieces(word))
+    return any(tongue.joined.counts.get(each, 0.0) > 0.0 or tongue.grounding.total(each) > 0.0 for each in pieces)
 
 
 def _relates(concept: Concept) -> bool:

@@ -264,8 +264,14 @@ function cell(kind, text) {
 }
 
 function notice(level, text) {
+  const last = byId("notices").firstChild;
+  if (last && last.dataset.level === level && last.dataset.text === text) { // one line for what happens again and again
+    last.dataset.times = Number(last.dataset.times) + 1;
+    last.textContent = `${text} (${last.dataset.times} times)`;
+    return;
+  }
   const item = cell("li", text);
-  item.dataset.level = level;
+  Object.assign(item.dataset, {level, text, times: 1});
   byId("notices").prepend(item);
   while (byId("notices").children.length > SHOWN_NOTICES) byId("notices").lastChild.remove();
 }

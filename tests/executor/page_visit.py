@@ -28,6 +28,10 @@ navigator.getGamepads = () => [{
 """JavaScript that stands for a gamepad: its sticks are `window.stick`, its buttons `window.pressed`."""
 GAIN = 2.5
 """Speed towards a place, per distance to it [1/s]."""
+PATIENCE = 6.0
+"""Time that a busy machine may take for a second of the robot's [s]."""
+GRIPPING, SETTLING = 0.9, 0.3
+"""Simulated time that the fingers need, and that they are left alone then [s]."""
 NEAR = 0.004
 """Near enough to a place [m]."""
 
@@ -99,13 +103,14 @@ class Driver:
         return np.array(self.page.status["tools"][self.arm]["position"])
 
     async def go(self, target: Sequence[float], seconds: float = 40.0, near: float = NEAR) -> None:
-        """Move the tool to a place in the world [m] along the sticks' axes."""
-        deadline = asyncio.get_running_loop().time() + seconds
+        """Move the tool to a place in the world [m] along the sticks' axes, within so much of the robot's own time."""
+        until, deadline = self.page.status["time"] + seconds, asyncio.get_running_loop().time() + PATIENCE * seconds
         while True:
             off = np.asarray(target) - self.place
             if np.linalg.norm(off) < near:
                 break
-            assert asyncio.get_running_loop().time() < deadline, f"not there: {off}, {self.page.status['reason']}"
+            late = self.page.status["time"] > until or asyncio.get_running_loop().time() > deadline
+            assert not late, f"not there: {off}, {self.page.status['reason']}"
             if self.page.status["state"] == "stopped":  # a busy machine: the page was silent, and sticks must be let go
                 await self._push(0.0, 0.0, 0.0)
                 await asyncio.sleep(0.25)
@@ -117,10 +122,16 @@ class Driver:
         await self.page.until(lambda: not self.page.status["moving"])
 
     async def grip(self, closed: bool) -> None:
-        await self._press("a" if closed else "b", 1.0)
-        await asyncio.sleep(0.9)
-        await self._press("a" if closed else "b", 0.0)
-        await asyncio.sleep(0.3)
+        button = "a" if closed else "b"
+        await self._press(button, 1.0)
+        await self._simulated(GRIPPING)
+        await self._press(button, 0.0)
+        await self._simulated(SETTLING)
+
+    async def _simulated(self, seconds: float) -> None:
+        """Wait for the robot's own time, which falls behind on a busy machine."""
+        until = self.page.status["time"] + seconds
+        await self.page.until(lambda: self.page.status["time"] >= until, 60.0)
 
     def _deflection(self, off: float) -> float:
         wanted = min(1.0, GAIN * abs(off) / self.top)

@@ -13,6 +13,7 @@ from PIL import Image
 
 from executor.execution.knowledge_lock import locked
 from learning import Knowledge
+from learning.concept_id import Concept
 from teleop import TeleopError, check_replay, load_demo
 from tests.executor.accessibility import problems
 from tests.executor.page_visit import Driver, Visit, board_scene, pictures_in, visit
@@ -125,6 +126,70 @@ def test_a_newcomer_shows_tells_and_has_a_command_done_in_eight_clicks(tmp_path:
     assert Knowledge.load(tmp_path / "demos" / "knowledge.json").demos == 1
 
 
+def test_a_demo_is_learned_once_however_often_that_is_asked(tmp_path: Path) -> None:
+    twice = "(e => { e.click(); e.click(); })(document.getElementById('%s'))"
+
+    async def lessons() -> None:
+        scene = board_scene(tmp_path, ((3, 3, 0), "red", "cube"), ((4, 2, 0), "blue", "cube"))
+        async with visit(scene, tmp_path / "demos") as page:
+            tab, driver = page.tab, Driver(page, "arm", 0.3)
+            await page.click("#record")
+            await page.in_mode("recording")
+            start = cell_centre(3, 3, 0)
+            await driver.go(start + UP, near=0.006)
+            await driver.go(start)
+            await driver.grip(True)
+            await driver.go(start + UP, near=0.02)
+            await page.click("#stop-deck")
+            await page.in_mode("review")
+            await page.click("#sentence")
+            await tab.type("take the red cube")
+            await tab.value(twice % "learn")
+            await page.learned()
+            assert await tab.value("document.getElementById('answer').hidden")  # nobody is told off for a double click
+            await tab.value("location.reload()")  # and again after a reload
+            await tab.until("document.body?.dataset.control === 'yours' && !document.getElementById('dock').hidden")
+            await page.click("#learn-demo")
+            await tab.until("document.getElementById('lesson').textContent.includes('was learned before')")
+            assert tab.complaints == []
+
+    asyncio.run(lessons())
+    assert Knowledge.load(tmp_path / "demos" / "knowledge.json").demos == 1
+
+
+def test_what_is_mistyped_is_taken_asked_or_shown(tmp_path: Path, knowledge_file: str) -> None:
+    async def test() -> None:
+        scene = board_scene(tmp_path, ((2, 2, 0), "red", "cube"), ((6, 6, 0), "blue", "cube"))
+        known = Knowledge.load(knowledge_file)
+        known.language.grounding.add("glue", Concept("shape", 1), 50.0)
+        path = tmp_path / "known.json"
+        known.save(path)
+        async with visit(scene, tmp_path / "demos", path) as page:
+            tab = page.tab
+            await command(page, "take the bleu cube")
+            assert "I take “bleu” as “blue”. Enter" in await page.answered("planned")
+            words = "[...document.querySelectorAll('#said .word')].map(e => [e.firstChild.textContent, e.dataset.kind])"
+            assert ["bleu", "colour"] in await tab.value(words)
+            await tab.screenshot(pictures_in(tmp_path, "mistyped") / "taken.png")
+
+            await page.click("#control")  # given back: who says something takes it again
+            await tab.until("document.body.dataset.control === 'watching'")
+            await command(page, "take the clue cube")
+            assert "perhaps you mean “blue” or “glue”" in await page.answered("unknown-word")
+            assert await problems(tab) == []
+            await tab.screenshot(pictures_in(tmp_path, "mistyped") / "asked.png")
+            await page.click("#spelling-1")
+            await page.answered("planned")
+            assert await tab.value("document.getElementById('command').value") == "take the blue cube"
+            await page.click("#command")
+            await page.enter()
+            await page.answered("done")
+            assert page.status["held"] == 1
+            assert tab.complaints == []
+
+    asyncio.run(test())
+
+
 def test_referents_are_ringed_questions_answered_and_deeds_stopped_undone_and_marked(
     tmp_path: Path, knowledge_file: str
 ) -> None:
@@ -227,8 +292,20 @@ def test_it_fits_a_phone_and_has_no_serious_problem_there(tmp_path: Path, knowle
             await page.answered("planned")
             assert await tab.value("document.documentElement.scrollWidth <= innerWidth")
             assert await tab.value("document.getAnimations().length") == 0
+            middle = "(b => document.elementFromPoint(b.x + b.width / 2, b.y + b.height / 2).id)"
+            box = "(document.getElementById('command').getBoundingClientRect())"
+            assert await tab.value(middle + box) == "command"  # the picture does not cover what is typed
             assert await problems(tab) == []
             await tab.screenshot(pictures_in(tmp_path, "phone") / f"{scheme}.png")
+            await page.click("#record")
+            await page.in_mode("recording")
+            await page.click("#end-here")  # below the picture, where it is seen while the sticks are held
+            await page.in_mode("review")
+            assert await tab.value("document.getElementById('learn-here').offsetParent !== null")
+            assert await problems(tab) == []
+            await tab.screenshot(pictures_in(tmp_path, "phone") / f"review-{scheme}.png")
+            await page.click("#discard")
+            await page.in_mode("idle")
             await tab.value("document.getElementById('look').click()")
             await tab.until("document.getElementById('knowledge').open")
             assert await tab.value("document.documentElement.scrollWidth <= innerWidth")

@@ -65,6 +65,21 @@ def test_a_lid_does_not_outweigh_the_body_that_the_hand_hides() -> None:
     red, lid = [180.0, 20.0, 20.0], [200.0, 200.0, 205.0]
     colours = np.concatenate((np.tile(lid, (60, 1)), np.tile(red, (25, 1))))
     heights = np.concatenate((np.full(60, 0.10), np.linspace(0.04, 0.09, 25)))
+    assert surface_colour(colours, heights, hidden=True) == pytest.approx(red)
+
+
+def test_a_lid_does_not_outweigh_the_body_that_is_looked_at_from_above() -> None:
+    red, lid = [180.0, 20.0, 20.0], [200.0, 200.0, 205.0]
+    colours = np.concatenate((np.tile(lid, (60, 1)), np.tile(red, (50, 1))))
+    heights = np.concatenate((np.full(60, 0.07), np.linspace(0.0, 0.06, 50)))
+    assert surface_colour(colours) == pytest.approx(lid)
+    assert surface_colour(colours, heights) == pytest.approx(red)
+
+
+def test_the_base_of_a_thing_does_not_outweigh_the_larger_part_that_is_seen_of_it() -> None:
+    red, base = [180.0, 20.0, 20.0], [90.0, 90.0, 92.0]
+    colours = np.concatenate((np.tile(red, (70, 1)), np.tile(base, (30, 1))))
+    heights = np.concatenate((np.linspace(0.028, 0.043, 70), np.linspace(0.0, 0.026, 30)))
     assert surface_colour(colours, heights) == pytest.approx(red)
 
 

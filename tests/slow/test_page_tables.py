@@ -3,7 +3,6 @@
 import asyncio
 import os
 import shutil
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,68 +13,14 @@ from learning import Knowledge
 from teleop import check_replay
 from tests.executor.accessibility import problems
 from tests.executor.page_visit import Driver, pictures_in, visit
+from tests.executor.table_cases import CASES, Case
 
 MOST_CLICKS = 8
 
 
-@dataclass(frozen=True)
-class Case:
-    """A robot at its table.
-
-    Attributes:
-        scene: The scene's TOML.
-        arm: The arm that is driven.
-        top_speed: Its speed with the stick pushed all the way [m/s].
-        grasp: Where the tool closes around the thing [m].
-        word: What the thing is called.
-        demos: Demos to learn from first.
-    """
-
-    scene: str
-    arm: str
-    top_speed: float
-    grasp: tuple[float, float, float]
-    word: str
-    demos: int
-
-
-CASES = {
-    "baxter": Case(
-        """
-name = "tabletop"
-kind = "table"
-robot = "baxter"
-objects = [
-  {id = 0, model = "orange_apple", position = [0.52, 0.345, 0.01702]},
-  {id = 1, model = "blue_cube", position = [0.70, 0.10, 0.016005]},
-]
-""",
-        "left",
-        0.05,
-        (0.52, 0.345, 0.017),
-        "apple",
-        102,
-    ),
-    "mico_segway": Case(
-        """
-name = "ordering"
-kind = "table"
-robot = "mico_segway"
-objects = [{id = 0, model = "small_blue_carton", position = [0.5, 0.0, 0.05]}]
-""",
-        "arm",
-        0.1,
-        (0.5, 0.0, 0.06),
-        "carton",
-        56,
-    ),
-}
-
-
 async def way(case: Case, folder: Path, knowledge: Path, pictures: Path) -> None:
     """Ask in a word of one's own, be told that it is new, show it by driving, and ask again."""
-    scene = folder / "scene.toml"
-    scene.write_text(case.scene, encoding="utf-8")
+    scene = case.write(folder)
     sentence = f"fetch the {case.word}"
     async with visit(scene, folder / "demos", knowledge) as page:
         tab, driver = page.tab, Driver(page, case.arm, case.top_speed)

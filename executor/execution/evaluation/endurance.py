@@ -9,6 +9,7 @@ import numpy as np
 
 from executor.execution.evaluation.case import Expected
 from executor.execution.evaluation.verdict import fault_of
+from executor.execution.history import KEPT
 from executor.executor import Executor
 from learning import Knowledge
 from teleop import TaskError, random_task
@@ -18,8 +19,8 @@ from twin.scene_spec import SceneSpec
 
 UNDONE = 0.1
 """Share of commands that are undone."""
-WARM = 5
-"""Commands after which memory is measured first: libraries are loaded by then."""
+WARM = KEPT + 5
+"""Commands after which memory is measured first: libraries are loaded, and all that can be undone is kept, by then."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ const TITLES = {
   planned: "I would do this", refused: "I do not understand", ambiguous: "Which one?", "unknown-word": "New to me",
   impossible: "I cannot do that here", undone: "Undone",
 };
+const WAITS_MS = 5000; // what was said too early and could not be heard for so long is forgotten
 const TONES = {done: "good", planned: "plain", undone: "plain", ambiguous: "ask", "unknown-word": "ask"};
 
 /** Give an element these buttons; those that stay are left in place, so that a click under way is not lost. */
@@ -24,8 +25,8 @@ function arrange(element, wanted) {
 }
 
 export class CommandLine {
-  /** @param {{say: (action: string, more?: object) => void, show: (sentence: string) => void,
-   *           release: () => void}} does  what the line asks for */
+  /** @param {{say: (action: string, more?: object) => void, show: (sentence: string) => void, stop: () => void,
+   *           release: () => void, end: () => void, learn: () => void, take: () => void}} does  what the line asks for */
   constructor(element, does) {
     this.does = does;
     this.known = {};
@@ -42,8 +43,8 @@ export class CommandLine {
     this.acts = make("div", {className: "buttons acts", id: "acts"});
     this.plan = make("ol", {className: "plan", id: "plan", tabIndex: 0, aria: {label: "Plan"}, hidden: true});
     const form = make("form", {className: "inline", id: "command-form"},
-      make("label", {className: "grow"}, make("span", {className: "label", id: "title-dock"}, "Tell the robot what to do"),
-        this.input),
+      make("label", {className: "grow"}, make("span", {className: "label", id: "title-dock"}, "Tell the robot what to do",
+        make("kbd", {className: "key", title: "This key goes here"}, "/")), this.input),
       make("label", {className: "check"}, this.at_once, make("span", {}, "at once")), this.go);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -65,9 +66,11 @@ export class CommandLine {
   }
 
   submit() {
-    if (!this.text || !this.yours) return;
+    if (!this.text) return;
+    if (!this.yours) this.does.take(); // it was lost as the page was silent, or never held; where another holds it, that is told
     if (!this.free) { // what is said a moment too early is heard as soon as it can be; not while the arm moves
       this.waiting = this.talk?.phase === "moving" ? "" : this.text;
+      this.since = performance.now();
       return;
     }
     this.waiting = "";
@@ -80,8 +83,8 @@ export class CommandLine {
     this.show();
   }
 
-  show(yours = this.yours, busy = this.busy, stopped = this.stopped) {
-    Object.assign(this, {yours, busy, stopped});
+  show(yours = this.yours, busy = this.busy, stopped = this.stopped, mode = this.mode) {
+    Object.assign(this, {yours, busy, stopped, mode});
     const {talk} = this;
     if (!talk) return;
     const free = yours && !busy && talk.phase === "idle";
@@ -92,7 +95,7 @@ export class CommandLine {
     this.showAnswer(free);
     this.showPlan();
     if (free && this.waiting) {
-      if (this.waiting === this.text) this.submit();
+      if (this.waiting === this.text && performance.now() - this.since < WAITS_MS) this.submit();
       this.waiting = "";
     }
   }
@@ -108,7 +111,8 @@ export class CommandLine {
   showAnswer(free) {
     const {phase, answer, sentence, undo} = this.talk;
     const waits = {thinking: ["Looking and thinking", ""], moving: ["Doing it", `“${sentence}”`]}[phase];
-    const told = answer?.kind === "planned" ? "Enter, or “Do it”, has it done." : answer?.text;
+    const note = answer?.note ? `${answer.note}. ` : "";
+    const told = answer?.kind === "planned" ? `${note}Enter, or “Do it”, has it done.` : answer?.text;
     const [title, text] = waits ?? (answer ? [TITLES[answer.kind] ?? answer.kind, told] : ["", ""]);
     this.answer.hidden = !title;
     this.answer.dataset.tone = waits ? "busy" : TONES[answer?.kind] ?? "bad";
@@ -122,9 +126,18 @@ export class CommandLine {
     const found = [];
     if (phase === "moving") found.push(["halt", "Stop", () => this.does.stop(), true, "danger"]);
     if (phase !== "idle") return found;
+    // Where the page is narrow, the card with these buttons is far below the picture.
+    if (this.mode === "recording") found.push(["end-here", "End the recording", () => this.does.end(), this.yours, "primary narrow"]);
+    if (this.mode === "review") {
+      found.push(["learn-here", "Keep and learn", () => this.does.learn(), this.yours && !this.talk.learning, "primary narrow"]);
+    }
     if (this.stopped) found.push(["go-on", "Release the stop", () => this.does.release(), this.yours]);
     (answer.options ?? []).forEach(([thing, name], i) => found.push([`option-${i + 1}`, `${i + 1}. ${name}`,
       () => this.does.say(this.at_once.checked ? "do" : "read", {text: sentence, choice: thing}), free]));
+    (answer.spellings ?? []).forEach(([word, meant], i) => found.push([`spelling-${i + 1}`, `“${word}”`, () => {
+      this.input.value = meant;
+      this.does.say(this.at_once.checked ? "do" : "read", {text: meant, choice: null});
+    }, free]));
     if (answer.kind === "unknown-word") {
       found.push(["show-it", "Show it what you mean", () => this.does.show(sentence), free, "record"]);
     }

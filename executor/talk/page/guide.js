@@ -3,7 +3,7 @@
 import {make, rebuild} from "./make.js";
 
 const STEPS = [
-  ["Show", "Press Record, drive the robot with keys or a gamepad, press End."],
+  ["Show", "Press Record, drive the robot with keys, a gamepad or the sticks on the screen, press End."],
   ["Tell", "Say what you did, in your own words."],
   ["Learn", "Keep and learn: it takes seconds."],
   ["Command", "Type what it shall do, below the picture. Enter shows the plan."],

@@ -6,6 +6,8 @@ import {KnowledgeCard} from "./knowledge.js";
 import {make, setText} from "./make.js";
 import {Overlay} from "./overlay.js";
 
+const FEW = 5; // demos, before which words are mostly guessed
+const MORE = " More demos, with other things and places, tell what each word means.";
 const byId = (name) => document.getElementById(name);
 
 export class Talk {
@@ -28,6 +30,9 @@ export class Talk {
       },
       stop: () => send({type: "stop"}),
       release: () => send({type: "release"}),
+      end: () => send({type: "do", action: "stop"}),
+      learn: () => this.learnThis(),
+      take: () => send({type: "control", action: "take"}),
     });
     this.learn = make("button", {type: "button", id: "learn", className: "primary", hidden: true,
       on: {click: () => this.learnThis()}}, "Keep and learn");
@@ -81,12 +86,13 @@ export class Talk {
     this.learn.hidden = !review;
     this.learn.disabled = !yours || Boolean(talk?.learning);
     this.again.disabled = !yours || deck.mode !== "idle" || Boolean(lent || talk?.learning) || !byId("demos").options.length;
-    this.line.show(yours, deck.mode !== "idle" || Boolean(lent), status.stopped);
+    this.line.show(yours, deck.mode !== "idle" || Boolean(lent), status.stopped, deck.mode);
     this.guide.show(stepNow({mode: deck.mode, said: deck.sentences || byId("sentence").value.trim(),
       learning: talk?.learning, knows: this.knowledge?.demos, talk}));
     const {learning, lesson} = talk ?? {};
     const said = learning ? `Learning ${learning} …` : !lesson ? "" : lesson.error ? `Not learned: ${lesson.error}` :
-      `${lesson.demo} is learned. Now type a command below the picture.`;
+      lesson.before ? `${lesson.demo} was learned before: it counts once.` :
+      `${lesson.demo} is learned. Now type a command below the picture.${this.knowledge?.demos < FEW ? MORE : ""}`;
     byId("lesson").hidden = !said;
     byId("lesson").dataset.tone = learning ? "busy" : lesson?.error ? "bad" : lesson ? "good" : "";
     setText(byId("lesson"), said);

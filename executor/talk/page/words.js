@@ -2,7 +2,7 @@
 
 import {make} from "./make.js";
 
-/** Kinds of meaning, as executor/talk/word_kinds.py has them: what each is called here. */
+/** Kinds of meaning, as executor/word_kinds.py has them: what each is called here. */
 export const KINDS = {
   action: "action", colour: "colour", shape: "shape", size: "size", place: "place", which: "which", it: "it",
   function: "no meaning", unsure: "unsure", unknown: "unknown",

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from executor.table_words import LEAST_SHARE
-from executor.talk.word_kinds import WordKind, kind_of
+from executor.word_kinds import WordKind, kind_of
 from learning.concept_id import Concept
 from learning.grounding.reading_learner import ReadingLearner
 from learning.grounding.scripts import script_of
@@ -45,7 +45,7 @@ def lexicon(knowledge: "Knowledge") -> list[Entry]:
 
 
 def entry_of(knowledge: "Knowledge", word: str) -> Entry:
-    """What one word means, of kind `UNKNOWN` where it was never heard."""
+    """What one word means, of kind `UNKNOWN` where it was never heard, `UNSURE` where it was never read."""
     tongue = knowledge.table_language.tongues.get(script_of((word,)))
     if tongue is not None:
         pieces = tongue.joined.pieces(word)
@@ -53,8 +53,21 @@ def entry_of(knowledge: "Knowledge", word: str) -> Entry:
         # A word may be several joined ones; what it is about is what says something.
         told = [entry for row in rows if (entry := _table_entry(word, row)) is not None]
         told.sort(key=lambda entry: (entry.concept is None, -entry.share))
-        return told[0] if told else Entry(word, WordKind.UNKNOWN, None, 0.0, 0.0)
+        heard = max((tongue.joined.counts.get(piece, 0.0) for piece in (word, *pieces)), default=0.0)
+        return told[0] if told else Entry(word, WordKind.UNSURE if heard else WordKind.UNKNOWN, None, 0.0, heard)
     return next((entry for entry in _of_board(knowledge, (word,))), Entry(word, WordKind.UNKNOWN, None, 0.0, 0.0))
+
+
+def heard_words(knowledge: "Knowledge", like: str) -> "Mapping[str, float]":
+    """Single words of the language that a word is of, as they were heard, with how often; letters decide on it."""
+    tongues = knowledge.table_language.tongues
+    if tongues:
+        tongue = tongues.get(script_of((like,)))
+        return {} if tongue is None else tongue.joined.counts
+    language = knowledge.language
+    if isinstance(language, ReadingLearner):
+        return language.alignment.word_counts
+    return {word: sum(row.values()) for word, row in language.grounding.counts.items() if " " not in word}
 
 
 def _of_board(knowledge: "Knowledge", only: tuple[str, ...] | None = None) -> "Iterator[Entry]":
