@@ -12,7 +12,8 @@ from executor.execution.answer import Answer
 from executor.report import ExecutionReport
 from executor.tables.clearing import covering, in_the_way, places_aside
 from executor.tables.places import TableThings
-from executor.tables.table_doer import TableDoer, TableUnderstood
+from executor.tables.table_doer import TableDoer
+from executor.tables.table_understanding import TableUnderstood
 from learning import Knowledge
 from learning.graphs import ActionGraphlet, GraphletState
 from learning.grounding.table_scene import OVER, SIDE_PLACES

@@ -12,7 +12,8 @@ from executor.actions.things import clear_below, pose_of
 from executor.execution.answer import Answer
 from executor.report import ExecutionReport
 from executor.tables.places import Spot
-from executor.tables.table_doer import TableDoer, TableUnderstood
+from executor.tables.table_doer import TableDoer
+from executor.tables.table_understanding import TableUnderstood
 from learning import Knowledge
 from learning.graphs import ActionGraphlet, GraphletState
 from learning.interpretation.interpretation import Goal
