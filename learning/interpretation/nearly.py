@@ -35,6 +35,7 @@ class NearlyDenotation(TableDenotation):
         looks: Mapping[str, FloatArray],
         spaces: ConceptSpaces,
         sorts: Mapping[str, Sorts],
+        also: Mapping[Concept, frozenset[Concept]] | None = None,
     ) -> None:
         """Look at a scene.
 
@@ -43,8 +44,14 @@ class NearlyDenotation(TableDenotation):
             looks: Space of looks to what each thing is like there, (N, d); NaN where that was not seen.
             spaces: Concepts.
             sorts: Space of looks to the sorts that words tell apart there.
+            also: Concepts to others that are called by the same word.
         """
         super().__init__(scene)
+        self._also = also or {}
+        plain = dict(self._masks)
+        for concept, others in self._also.items():
+            for other in others:
+                self._masks[concept] = self._masks.get(concept, 0) | plain.get(other, 0)
         self._looks = looks
         self._spaces = spaces
         self._sorts = sorts
@@ -74,7 +81,7 @@ class NearlyDenotation(TableDenotation):
         values = self._looks.get(space)
         if values is None:
             return np.asarray(np.minimum(off, NOT_THERE))
-        away = self._away(concept, values)
+        away = np.min([self._away(each, values) for each in (concept, *self._also.get(concept, ()))], axis=0)
         unseen = ~np.all(np.isfinite(values), axis=1)
         near: FloatArray = np.where(unseen, 0.0, np.minimum(off, away))
         return near

@@ -1,5 +1,6 @@
 """From a sentence and what the camera sees of a table to what is to be done with which thing, and where it goes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from learning.grounding.ngrams import ngrams_of
 from learning.grounding.scripts import script_of
 from learning.grounding.table_scene import PLACE_SPACE, TableRecord, TableScene, still_record
 from learning.grounding.tongue import Tongue
+from learning.interpretation.also_meant import also_meant
 from learning.interpretation.interpretation import listed
 from learning.interpretation.left_out import absent_phrases, unheeded_nodes
 from learning.interpretation.nearly import NearlyDenotation
@@ -107,7 +109,8 @@ class TableInterpreter:
             why = "nothing of the sentence was understood"
             why += f"; never heard {listed(unknown)}" if unknown else ""
             return TableReading(words, None, None, (), None, unknown, why, unlearned=unlearned_words(tongue, words))
-        denotation = self._denotation(observation, held)
+        also = also_meant(tongue, words, tree, self.knowledge.spaces.mixtures)
+        denotation = self._denotation(observation, held, also)
         meant = denotation.understand(tree)
         things = _indices(meant.things)
         if not things and last is not None and any(node.concept == REFERENCE for node in tree.nodes()):
@@ -137,11 +140,13 @@ class TableInterpreter:
         """What the camera sees, in the learner's symbols; nothing is shown in it."""
         return self.knowledge.table_language.scene(self._record(observation, held), self.knowledge.spaces)
 
-    def _denotation(self, observation: Observation, held: int | None) -> TableDenotation:
+    def _denotation(
+        self, observation: Observation, held: int | None, also: Mapping[Concept, frozenset[Concept]]
+    ) -> TableDenotation:
         """What words denote in what is seen."""
         spaces, language = self.knowledge.spaces, self.knowledge.table_language
         record = self._record(observation, held)
-        return NearlyDenotation(language.scene(record, spaces), record.looks, spaces, language.sorts)
+        return NearlyDenotation(language.scene(record, spaces), record.looks, spaces, language.sorts, also)
 
     def _record(self, observation: Observation, held: int | None) -> TableRecord:
         return still_record(observation, self.knowledge.spaces, anchors(observation)[1], held)
