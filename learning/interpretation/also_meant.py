@@ -40,8 +40,16 @@ def _others(tongue: Tongue, said: tuple[str, ...], concept: Concept) -> Iterator
             each: share for each, share in meanings.items() if each is not None and _space(each) == _space(concept)
         }
         if concept in of_space:
-            best = max(of_space.values())
-            yield from (each for each, share in of_space.items() if share >= LEAST_SHARE * best and each != concept)
+            least = LEAST_SHARE * max(of_space.values())
+            for each, share in of_space.items():
+                if each != concept and share >= least and _usual_name(tongue, each) == ngram:
+                    yield each
+
+
+def _usual_name(tongue: Tongue, concept: Concept) -> str:
+    """What a concept is called most often: what has a name of its own is not meant by that of another."""
+    counts = tongue.grounding.counts
+    return max(counts, key=lambda ngram: (counts[ngram].get(concept, 0.0), ngram), default="")
 
 
 def _space(concept: Concept) -> str:

@@ -94,3 +94,5 @@ def test_a_concept_is_also_meant_where_a_word_was_often_used_for_it(uses: float,
     found = also_meant(tongue, ("tub",), tree, {"shape", "size"})
     assert found == ({one: frozenset({other})} if both else {})
     assert also_meant(tongue, ("tub",), tree, {"size"}) == {}
+    tongue.grounding.add("bucket", other, 20.0)  # a name of its own
+    assert also_meant(tongue, ("tub",), tree, {"shape", "size"}) == {}
