@@ -45,6 +45,7 @@ PRIORS: dict[Feature, float] = {
     ("joined", "action"): -1.0,
     # What is beside a thing is nearest to it too, but that says less.
     ("relation", str(BESIDE), "thing"): 0.5,
+    ("relation", str(BESIDE), "place"): -1.0,
     # What is in a place is on its ground too, but that says less.
     ("relation", str(ABOVE), "place"): -1.0,
     # What is to one side of a place is off the board, or is part of it and called so.

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from learning.concept_id import ACTION_SPACE, REFERENCE, Concept
 from robots.pose import FloatArray
 
-MOST_ODDS = 3.0
+MOST_ODDS = 1.0
 """Largest log odds that a concept is told."""
 AGAIN = math.log(0.3)
 """Log of how much less likely a word is said of what another word of the sentence tells already."""
