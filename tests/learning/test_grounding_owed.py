@@ -56,7 +56,7 @@ def test_a_rare_word_for_what_is_there_in_every_scene_is_learned_by_what_its_sen
     meanings = alignment.meanings("dado")
     others = [share for meaning, share in meanings.items() if meaning not in (None, CUBE)]
     # "Cubo" is said with nearly everything, so it is itself not told from words like "il" by alignment alone; reading
-    # does that. What counts is that "dado" is tried for a cube, before all else. Each word by itself: 0.02, behind a side.
+    # does that. What counts is that "dado" is tried for a cube before all else. Words by themselves: 0.02.
     assert meanings[CUBE] > 0.08
     assert meanings[CUBE] > 1.5 * max(others)
 
