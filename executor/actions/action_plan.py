@@ -123,6 +123,8 @@ class _Planner:
             yield Retreat()
             if before.gripper_closed != after.gripper_closed:
                 yield Shape(after.gripper_closed)
+        elif after.touching and before.side is not None:
+            yield from (Retreat(), Shape(closed=False), Reach(self._lift))  # from outside to around it
         elif after.touching and not before.touching:
             if before.gripper_closed:
                 yield Shape(closed=False)
