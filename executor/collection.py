@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from executor.errors import InputError
-from robots.workers import end_with_parent
+from robots.workers import end_with_parent, worker_count
 from twin.quiet import load_physics
 
 VARIETY = 0.25
@@ -135,7 +135,7 @@ def in_processes(
         processes: How many; 0 takes one a core.
         on_done: Called after every job.
     """
-    processes = min(processes or len(os.sched_getaffinity(0)), len(jobs))
+    processes = min(worker_count(processes), len(jobs))
     if processes <= 1:
         for index, job in enumerate(jobs):
             yield index, work(job)

@@ -1,4 +1,4 @@
-"""Worker processes that do not outlive the process that started them."""
+"""Worker processes: how many, and that they do not outlive the process that started them."""
 
 import multiprocessing
 import os
@@ -8,6 +8,11 @@ import time
 LOOK_EVERY = 0.25
 """Between two looks whether the parent still lives [s]."""
 _watch: threading.Thread | None = None
+
+
+def worker_count(asked: int) -> int:
+    """As many processes as were asked for; where that is 0, one for each core that may be used."""
+    return asked or len(os.sched_getaffinity(0))
 
 
 def end_with_parent() -> None:

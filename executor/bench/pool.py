@@ -1,12 +1,11 @@
 """Benchmarks in several processes."""
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 from typing import TypeVar
 
-from robots.workers import end_with_parent
+from robots.workers import end_with_parent, worker_count
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -22,7 +21,7 @@ def spread(work: Callable[[Task], Result], tasks: Sequence[Task], jobs: int = 0)
         tasks: What to give it.
         jobs: Processes; 0 takes one a core, 1 works in this one.
     """
-    count = min(jobs or len(os.sched_getaffinity(0)), len(tasks))
+    count = min(worker_count(jobs), len(tasks))
     if count <= 1:
         yield from map(work, tasks)
         return

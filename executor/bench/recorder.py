@@ -2,7 +2,6 @@
 
 import json
 import mmap
-import os
 import shutil
 import signal
 import subprocess
@@ -20,6 +19,7 @@ from executor.bench.recorder_child import PROGRESS, SCENES, Rig, paced
 from executor.bench.report import BenchReport
 from executor.collection import in_processes
 from robots.pose import FloatArray
+from robots.workers import worker_count
 from teleop import (
     Demo,
     DemoError,
@@ -75,7 +75,7 @@ def run(
             for robot in robots:
                 figures |= jitter(robot, seed, seconds, folder)
                 on_done()
-        figures |= killed(seed, kills, robots, folder, jobs or len(os.sched_getaffinity(0)), on_done)
+        figures |= killed(seed, kills, robots, folder, worker_count(jobs), on_done)
         found, told = full_disk(robots[0], seed, folder)
         figures |= found
         notes.append(told)

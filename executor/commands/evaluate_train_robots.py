@@ -1,6 +1,5 @@
 """`showtell evaluate train-robots`: how many of the public release's commands are understood rightly."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 from enum import StrEnum
@@ -70,6 +69,7 @@ def train_robots(
     from learning.evaluation import cross_validate, examine
     from learning.train_robots import Release
     from learning.train_robots import extended as extend
+    from robots.workers import worker_count
 
     out = Output(as_json)
     values = epsilon or []
@@ -103,7 +103,7 @@ def train_robots(
             folds=count,
             split=split.value,
             seed=seed,
-            jobs=jobs or len(os.sched_getaffinity(0)),
+            jobs=worker_count(jobs),
             curve=curve,
             on_fold=lambda done, total: advance(),
         )

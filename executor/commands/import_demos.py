@@ -1,6 +1,5 @@
 """`showtell import`: turn a public data set into demos driven on the twin."""
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -44,12 +43,13 @@ def train_robots(
 
     from executor.compare_graphlets import compare_graphlets
     from executor.import_release import import_release, load_release
+    from robots.workers import worker_count
 
     out = Output(as_json)
     report = import_release(
         directory,
         output,
-        jobs=jobs or len(os.sched_getaffinity(0)),
+        jobs=worker_count(jobs),
         only=only or None,
         seed=seed,
         progress=True,

@@ -1,6 +1,5 @@
 """Grounding and grammar of the board's commands, learned from the key frames of a release, over folds by group."""
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +25,7 @@ def release_language(out: "Output", directory: Path, *, folds: int, seed: int, j
     from executor.release_student import LearnRelease
     from learning.evaluation.board_exam import board_exam
     from learning.train_robots import Release
+    from robots.workers import worker_count
 
     release = Release.load(directory)
     with out.progress(f"learning and asking {folds} folds", folds) as advance:
@@ -34,6 +34,6 @@ def release_language(out: "Output", directory: Path, *, folds: int, seed: int, j
             LearnRelease(seed),
             folds=folds,
             seed=seed,
-            jobs=jobs or len(os.sched_getaffinity(0)),
+            jobs=worker_count(jobs),
             on_fold=advance,
         )

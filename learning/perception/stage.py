@@ -22,7 +22,7 @@ from learning.errors import PerceptionError
 from learning.perception.camera_observation import Perceived
 from learning.perception.observation_file import load_observation, save_observation
 from learning.perception.observe_camera import USUAL, Eyesight
-from robots.workers import end_with_parent
+from robots.workers import end_with_parent, worker_count
 
 PERCEPTION_VERSION = 2
 """Raised when perception would give other observations for the same demo."""
@@ -100,7 +100,7 @@ def perceive_demos(
             done[number] = kept
             on_done(kept)
     left = [task for task in tasks if task[0] not in done]
-    for number, outcome in _in_parallel(left, jobs or len(os.sched_getaffinity(0)), cluster):
+    for number, outcome in _in_parallel(left, worker_count(jobs), cluster):
         done[number] = outcome
         on_done(outcome)
     return [done[number] for number in range(len(tasks))]
