@@ -47,8 +47,7 @@ def in_the_way(
 ) -> tuple[tuple[int, ...], list[Spot]] | None:
     """The fewest things without which there would be room for a goal, and the places then; None where there are none.
 
-    What lies on or in them is in the
-    way too. At most `MOST_IN_THE_WAY` are looked for.
+    What lies on or in them is in the way, too. At most `MOST_IN_THE_WAY` are looked for.
 
     Args:
         goal: What is meant.

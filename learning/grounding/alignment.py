@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from learning.concept_id import Concept
-from learning.grounding.owed import MOST_ODDS, is_in_ways, log_odds_told, log_untold, with_owed
+from learning.grounding.owed import is_in_ways, log_odds_told, log_untold, with_owed
 from learning.grounding.shares import shares_of
 from learning.saved_numbers import saved_count
 
@@ -46,10 +46,17 @@ Shares = tuple[tuple[float, ...], ...]
 
 
 class Observed(NamedTuple):
-    """What a sentence added: what it may be about, and the probability of each word to be said of each of these."""
+    """What a sentence added.
+
+    Attributes:
+        salient: What it may be about.
+        shares: For each word, the probability that it is said of each of these.
+        told: For each of these, the probability that any word is said of it.
+    """
 
     salient: tuple[Concept, ...]
     shares: Shares
+    told: tuple[float, ...]
 
     @property
     def meanings(self) -> tuple[Meaning, ...]:
@@ -114,13 +121,14 @@ class Alignment:
             ]
         )
         if words and self.sentences >= ENOUGH:
-            owed = [MOST_ODDS if each in told and not is_in_ways(each) else self._log_odds(each) for each in salient]
+            owed = [
+                log_odds_told(each, self.salient.get(each, 0.0), self.told.get(each, 0.0), each in told)
+                for each in salient
+            ]
             heard = np.array([self.word_counts[word] for word in words])
             untold = log_untold(words, shares, _in_ways(meanings))[1]
             shares = with_owed(shares, untold, np.array([0.0, *owed]), heard)
-        observed = Observed(tuple(salient), tuple(map(tuple, shares.tolist())))
-        self._add(words, observed, 1.0)
-        return observed
+        return self._added(words, tuple(salient), tuple(map(tuple, shares.tolist())))
 
     def level(self, words: Sequence[str], earlier: Observed, most: float) -> Observed:
         """Take back what was made of the rare words of a sentence: they may be said of anything again.
@@ -138,12 +146,18 @@ class Alignment:
         self._add(words, earlier, -1.0)
         flat = (1.0 / len(earlier.meanings),) * len(earlier.meanings)
         pairs = zip(words, earlier.shares, strict=True)
-        level = earlier._replace(shares=tuple(flat if self.word_counts[word] <= most else row for word, row in pairs))
-        self._add(words, level, 1.0)
-        return level
+        level = tuple(flat if self.word_counts[word] <= most else row for word, row in pairs)
+        return self._added(words, earlier.salient, level)
 
-    def _log_odds(self, concept: Concept) -> float:
-        return log_odds_told(concept, self.salient.get(concept, 0.0), self.told.get(concept, 0.0))
+    def _added(self, words: Sequence[str], salient: tuple[Concept, ...], shares: Shares) -> Observed:
+        """Count what the words of a sentence are said of; what that adds."""
+        told: tuple[float, ...] = (0.0,) * len(salient)
+        if words:
+            untold = log_untold(words, np.array(shares), _in_ways((None, *salient)))[0]
+            told = tuple((-np.expm1(untold[1:])).tolist())
+        observed = Observed(salient, shares, told)
+        self._add(words, observed, 1.0)
+        return observed
 
     def _add(self, words: Sequence[str], observed: Observed, sign: float) -> None:
         for word, row_shares in zip(words, observed.shares, strict=True):
@@ -152,8 +166,7 @@ class Alignment:
                 row[meaning] = max(0.0, row[meaning] + sign * share)
                 self.totals[meaning] = max(0.0, self.totals[meaning] + sign * share)
         if words:
-            told = -np.expm1(log_untold(words, np.array(observed.shares), _in_ways(observed.meanings))[0])
-            for concept, share in zip(observed.salient, told[1:].tolist(), strict=True):
+            for concept, share in zip(observed.salient, observed.told, strict=True):
                 self.salient[concept] += sign
                 self.told[concept] = max(0.0, self.told[concept] + sign * share)
 

@@ -29,16 +29,19 @@ def is_in_ways(meaning: Concept | None) -> bool:
     return meaning is not None and meaning.space in WITH_WAYS
 
 
-def log_odds_told(concept: Concept, salient: float, told: float) -> float:
+def log_odds_told(concept: Concept, salient: float, told: float, certain: bool = False) -> float:
     """Log odds that a concept is told when it is salient, 0 for what depends on the way of speaking.
 
     Args:
         concept: The concept.
         salient: Number of sentences in which it was salient.
         told: Number of these in which it was told.
+        certain: Whether it is told for certain in the sentence at hand.
     """
     if is_in_ways(concept):
         return 0.0
+    if certain:
+        return MOST_ODDS
     share = (told + 1.0) / (salient + 3.0)
     return min(MOST_ODDS, max(-MOST_ODDS, math.log(share / max(1e-9, 1.0 - share))))
 
