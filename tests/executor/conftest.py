@@ -9,17 +9,14 @@ from learning import Knowledge
 from learning.concept_id import Concept
 from learning.concepts.feature_space import FEATURE_SPACES
 from learning.concepts.gaussian import Gaussian
-from learning.graphs import ActionGraphlet, GraphletState
+from learning.graphs import ActionGraphlet
 from learning.perception.board_noise import hsl
 from learning.perception.descriptors import board_descriptors
+from tests.executor.graphlets import APART, CARRIED, GRIP, LEFT, MOVE, PUT, TOUCH
 from twin import board
 
-State = GraphletState
-APART, TOUCH, GRIP, CARRIED = State(False, False, 0), State(False, True, 0), State(True, True, 0), State(True, True, 1)
-PUT, LEFT = State(False, True, 1), State(False, False, 1)
 TAKE = ActionGraphlet((APART, TOUCH, GRIP, CARRIED))
 DROP = ActionGraphlet((GRIP, CARRIED, PUT, LEFT))
-MOVE = ActionGraphlet((APART, TOUCH, GRIP, CARRIED, PUT, LEFT))
 UP = 4
 """Number of the direction straight up."""
 

@@ -178,6 +178,16 @@ async def visit(
     """Serve the page as `showtell serve` does and open it."""
     settings = LoopSettings(str(scene), None, seed, folder)
     server = PageServer(talking(settings, knowledge or folder / "knowledge.json"), files=talk_files())
+    async with served(server, size, PAD) as tab:
+        await tab.until("!document.getElementById('dock').hidden")
+        page = Visit(server, tab)
+        await page.until(lambda: page.status["state"] == "ok")
+        yield page
+
+
+@asynccontextmanager
+async def served(server: PageServer, size: tuple[int, int], first: str) -> AsyncIterator[Tab]:
+    """Serve a page and open it, with a script that runs first; wait until the browser may drive and sees the robot."""
     ready: asyncio.Future[str] = asyncio.get_running_loop().create_future()
     serving = asyncio.create_task(server.run(ready.set_result))
     try:
@@ -186,13 +196,10 @@ async def visit(
             if serving.done():
                 serving.result()
             tab = await browser.tab()
-            await tab.start(*size, phone=size[0] < 600, first=PAD)
+            await tab.start(*size, phone=size[0] < 600, first=first)
             await tab.open(ready.result())
             await tab.until("document.body?.dataset.control === 'yours' && Number(document.body.dataset.pictures) > 0")
-            await tab.until("!document.getElementById('dock').hidden")
-            page = Visit(server, tab)
-            await page.until(lambda: page.status["state"] == "ok")
-            yield page
+            yield tab
     finally:
         serving.cancel()
         await asyncio.gather(serving, return_exceptions=True)

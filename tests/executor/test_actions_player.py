@@ -11,21 +11,12 @@ from executor.actions.witness import WitnessedWorld
 from executor.follow import wait
 from learning.graphs import ActionGraphlet, GraphletState, Side
 from robots.pose import FloatArray
+from tests.executor.graphlets import MOVE
 from twin import ObjectSpec, SceneSpec, TwinError, World
 from twin.board import cell_centre
 from twin.objects import object_model
 
 THING = 3
-MOVE = ActionGraphlet(
-    (
-        GraphletState(False, False, 0),
-        GraphletState(False, True, 0),
-        GraphletState(True, True, 0),
-        GraphletState(True, True, 1),
-        GraphletState(False, True, 1),
-        GraphletState(False, False, 1),
-    )
-)
 PUT_DOWN = ActionGraphlet((MOVE.states[2], *MOVE.states[3:]))
 GRASP = ActionGraphlet(MOVE.states[:3])
 PRESS = ActionGraphlet(

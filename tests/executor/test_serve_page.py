@@ -19,10 +19,11 @@ from PIL import Image
 from typer.testing import CliRunner
 
 from executor.bench.page import STUB
-from executor.browser import Browser, Tab
+from executor.browser import Tab
 from teleop import TeleopError, check_replay, load_demo
 from teleop.loop_process import LoopSettings
 from teleop.server import PageServer
+from tests.executor.page_visit import served
 
 pytestmark = pytest.mark.skipif(
     not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))),
@@ -73,21 +74,8 @@ class Visit:
 @asynccontextmanager
 async def visit(scene: str, folder: Path, *, width: int = 1280, height: int = 800) -> AsyncIterator[Visit]:
     server = PageServer(LoopSettings(scene, None, 3, folder))
-    ready: asyncio.Future[str] = asyncio.get_running_loop().create_future()
-    serving = asyncio.create_task(server.run(ready.set_result))
-    try:
-        async with Browser() as browser:
-            await asyncio.wait((ready, serving), return_when=asyncio.FIRST_COMPLETED)
-            if serving.done():
-                serving.result()
-            tab = await browser.tab()
-            await tab.start(width, height, phone=width < 600, first=STUB)
-            await tab.open(ready.result())
-            await tab.until("document.body?.dataset.control === 'yours' && Number(document.body.dataset.pictures) > 0")
-            yield Visit(server, tab, ARM[scene])
-    finally:
-        serving.cancel()
-        await asyncio.gather(serving, return_exceptions=True)
+    async with served(server, (width, height), STUB) as tab:
+        yield Visit(server, tab, ARM[scene])
 
 
 @pytest.mark.parametrize("scene", list(ARM))

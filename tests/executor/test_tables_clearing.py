@@ -15,25 +15,14 @@ from executor.tables.places import TableThings
 from executor.tables.table_doer import TableDoer
 from executor.tables.table_understanding import TableUnderstood
 from learning import Knowledge
-from learning.graphs import ActionGraphlet, GraphletState
 from learning.grounding.table_scene import OVER, SIDE_PLACES
 from learning.interpretation.interpretation import Goal
 from learning.interpretation.table_interpreter import TableGoal, TableReading
+from tests.executor.graphlets import MOVE, PICK_UP
 from twin import ObjectSpec, SceneSpec, World
 from twin.objects import object_model
 
 FAR, _, LEFT, _ = SIDE_PLACES
-MOVE = ActionGraphlet(
-    (
-        GraphletState(False, False, 0),
-        GraphletState(False, True, 0),
-        GraphletState(True, True, 0),
-        GraphletState(True, True, 1),
-        GraphletState(False, True, 1),
-        GraphletState(False, False, 1),
-    )
-)
-TAKE = ActionGraphlet((*MOVE.states[:3], GraphletState(True, True, 0, raised=True)))
 CUBE, BOWL, LOW = [0.035, 0.035, 0.034], [0.1, 0.09, 0.046], [0.035, 0.034, 0.022]
 """Length, width and height of things as they are seen [m]."""
 
@@ -41,7 +30,7 @@ CUBE, BOWL, LOW = [0.035, 0.035, 0.034], [0.1, 0.09, 0.046], [0.035, 0.034, 0.02
 def known() -> Knowledge:
     """Knowledge of where things rest and of two actions, without a word."""
     knowledge = Knowledge("table")
-    for graphlet in (MOVE, TAKE):
+    for graphlet in (MOVE, PICK_UP):
         knowledge.spaces.actions.match_or_add(graphlet)
     for x in (0.53, 0.77):
         for y in (-0.25, 0.0, 0.25):
@@ -115,8 +104,8 @@ def taken(world: World, doer: TableDoer, knowledge: Knowledge, thing: int) -> Ex
     view = doer.look()
     where = pose_of(world.state(), thing).position
     index = int(np.argmin(np.linalg.norm(view.things.location - where, axis=1)))
-    reading = TableReading(("take",), None, knowledge.spaces.actions.match_or_add(TAKE), (index,), None, (), "")
-    goals = (Goal(view.numbers[index], None, TAKE),)
+    reading = TableReading(("take",), None, knowledge.spaces.actions.match_or_add(PICK_UP), (index,), None, (), "")
+    goals = (Goal(view.numbers[index], None, PICK_UP),)
     return doer.carry_out(TableUnderstood(("take",), None, "", goals=goals, reading=reading), view, "take")
 
 

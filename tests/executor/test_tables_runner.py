@@ -15,23 +15,13 @@ from executor.tables.places import Spot
 from executor.tables.table_doer import TableDoer
 from executor.tables.table_understanding import TableUnderstood
 from learning import Knowledge
-from learning.graphs import ActionGraphlet, GraphletState
+from learning.graphs import ActionGraphlet
 from learning.interpretation.interpretation import Goal
 from learning.interpretation.table_interpreter import TableReading
+from tests.executor.graphlets import MOVE, PICK_UP
 from twin import JointCommand, ObjectSpec, SceneSpec, World
 from twin.objects import object_model
 
-MOVE = ActionGraphlet(
-    (
-        GraphletState(False, False, 0),
-        GraphletState(False, True, 0),
-        GraphletState(True, True, 0),
-        GraphletState(True, True, 1),
-        GraphletState(False, True, 1),
-        GraphletState(False, False, 1),
-    )
-)
-TAKE = ActionGraphlet((*MOVE.states[:3], GraphletState(True, True, 0, raised=True)))
 CUBE, OTHER = 0, 1
 """Ids of the things."""
 CUBE_AT, OTHER_AT, ELSEWHERE = (0.78, 0.22), (0.66, -0.02), (0.54, -0.22)
@@ -70,7 +60,7 @@ def table() -> Iterator[Table]:
         for number, name, at in ((CUBE, "red_cube", CUBE_AT), (OTHER, "blue_cube", OTHER_AT))
     )
     known = Knowledge("table")
-    actions = {graphlet: known.spaces.actions.match_or_add(graphlet) for graphlet in (MOVE, TAKE)}
+    actions = {graphlet: known.spaces.actions.match_or_add(graphlet) for graphlet in (MOVE, PICK_UP)}
     with World(SceneSpec(name="two things", kind="table", robot="baxter", objects=objects)) as world:
         doer = TableDoer(world, known, np.random.default_rng(0))
         yield Table(world, doer, actions)
@@ -131,7 +121,7 @@ def test_after_a_stop_on_the_way_what_is_held_is_set_down_before_the_next_goal(t
         last[0] = height
 
     world.on_step = watch
-    report = table.do(TAKE, OTHER)
+    report = table.do(PICK_UP, OTHER)
     world.on_step = None
     assert report.answer is Answer.DONE, report.explanation
     assert "put down" in report.reason
@@ -175,7 +165,7 @@ def test_a_base_rolls_to_where_the_arm_reaches_and_stays_where_it_never_would() 
         spec = SceneSpec(name="far", kind="table", robot="mico_segway", objects=(thing,))
         with World(spec) as world:
             before, time = world.base_pose.position, world.time
-            played = ActionPlayer(world, np.random.default_rng(0)).play(TAKE, CUBE)
+            played = ActionPlayer(world, np.random.default_rng(0)).play(PICK_UP, CUBE)
             moved = float(np.linalg.norm(world.base_pose.position - before))
             assert played.success is rolls, played.reason
             assert (moved > 0.05) is rolls
