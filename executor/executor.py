@@ -13,6 +13,7 @@ from executor.execution.history import History
 from executor.execution.spelling import Spelling, slips_put_right, spellings_of, taken_words
 from executor.execution.steps import Step, steps_of
 from executor.execution.understood import Understood
+from executor.free_memory import give_back_free_memory
 from executor.report import ExecutionReport, joined, report_of, spelt
 from learning.grounding.ngrams import with_words, words_of
 
@@ -83,6 +84,7 @@ class Executor:
             report = doer.plan(steps[0].understood, view, sentence)
         else:
             report = self._carried_out(sentence, steps, view, choice)
+        give_back_free_memory()
         return spelt(replace(report, durations=dict(doer.stopwatch.seconds)), spelling)
 
     def preview(self, sentence: str, choice: int | None = None) -> ExecutionReport:

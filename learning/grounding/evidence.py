@@ -21,7 +21,8 @@ FEW_TIMES = 4
 LEAST_TRUE = 0.25
 """and what it means must be there so often when something of that feature space is,"""
 ACTION_LIFT = 2.0
-"""For actions so much more often, as moving goes with words about places,"""
+"""For actions so much more often, as moving goes with words about places; a word that is mostly passed over may say an
+action that it goes with surely more often than any does,"""
 OF_ACTIONS = 0.5
 """except that an n-gram whose readings are actions in so many cases may say any action that goes with it"""
 LEAST_ACTION = 0.1
@@ -82,11 +83,11 @@ class Evidence:
             return True
         row = matrix.joint_counts[ngram]
         share = row.get(concept, 0.0) / max(row.get(every, 0.0), 1.0)
+        sure = wilson(row.get(concept, 0.0), row.get(every, 0.0), self._by_chance(every)) > usual
         if concept.space == ACTION_SPACE and self.share_of_space(ngram, ACTION_SPACE) < OF_ACTIONS:
-            return share >= ACTION_LIFT * usual
+            return share >= ACTION_LIFT * usual or (sure and self._mostly_passed(ngram))
         if concept.space == ACTION_SPACE:
             return share >= LEAST_ACTION
-        sure = wilson(row.get(concept, 0.0), row.get(every, 0.0), self._by_chance(every)) > usual
         return sure and share >= max(LEAST_TRUE, LEAST_LIFT * usual)
 
     def denied(self, ngram: str, concept: Concept) -> bool:

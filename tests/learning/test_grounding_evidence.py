@@ -1,0 +1,37 @@
+"""What counts say for an action: verbs are told from words that are only heard where something is done."""
+
+from learning.concept_id import Concept
+from learning.grounding.correlation import CorrelationMatrix
+from learning.grounding.evidence import Evidence, any_like
+from learning.grounding.grounding import Grounding
+
+PICK, MOVE, PUT = (Concept("action", number) for number in range(3))
+LEFT = Concept("direction", 0)
+
+
+def heard(word: str, *actions: Concept, read_as: Concept | None = None) -> Evidence:
+    """A language in which three actions are shown equally often, and a word was heard with these of them."""
+    matrix, grounding = CorrelationMatrix(), Grounding()
+    for shown in actions:
+        matrix.observe((word,), (shown, any_like(shown)))
+        grounding.add(word, read_as)
+    for shown in (PICK, MOVE, PUT):
+        for _ in range(60 - actions.count(shown)):
+            matrix.observe(("the",), (shown, any_like(shown)))
+    return Evidence(matrix, grounding, {})
+
+
+def test_a_verb_that_is_also_a_step_of_another_action_may_say_what_it_mostly_goes_with() -> None:
+    # "Raise the cup" is picking up, and "raise the cup and bring it there" is moving.
+    evidence = heard("raise", *[PICK] * 21, *[MOVE] * 15)
+    assert evidence.borne_out("raise", PICK)
+    assert not evidence.borne_out("raise", MOVE)
+
+
+def test_what_goes_with_an_action_as_chance_has_it_does_not_say_it() -> None:
+    assert not heard("please", *[PICK] * 14, *[MOVE] * 12, *[PUT] * 10).borne_out("please", PICK)
+
+
+def test_a_word_with_another_meaning_says_an_action_only_where_it_nearly_always_goes_with_it() -> None:
+    assert not heard("left", *[PICK] * 21, *[MOVE] * 15, read_as=LEFT).borne_out("left", PICK)
+    assert heard("left", *[PICK] * 30, *[MOVE] * 6, read_as=LEFT).borne_out("left", PICK)
