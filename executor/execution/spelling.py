@@ -1,7 +1,7 @@
 """Words that were never heard and look like ones that were: what a person may have meant to type.
 
-A word is near another when a few letters are left out, put in, taken for others, or two neighbours changed places
-(Damerau's distance, each place touched once). Only words whose meaning is known are offered.
+A word is near another when a few letters are left out, put in, taken for others, or two neighbours changed places. Only
+words whose meaning is known are offered.
 """
 
 from collections.abc import Iterable, Mapping
@@ -12,17 +12,12 @@ from executor.lexicon import entry_of, heard_words
 from executor.word_kinds import WordKind
 from learning.grounding.ngrams import with_words
 from learning.grounding.scripts import script_of
+from learning.grounding.slips import near_words
 
 if TYPE_CHECKING:
     from learning import Knowledge
     from learning.concept_id import Concept
 
-SHORTEST = 3
-"""Letters of a word that may be misspelt."""
-ONE_SLIP = 4
-"""Letters that the longer of two words has where one letter may be wrong; in shorter ones two may change places."""
-TWO_SLIPS = 8
-"""Letters of a word that may be wrong in two places."""
 RARELY = 0.1
 """What was heard less often than this share of the most frequent one is not offered beside it."""
 
@@ -107,26 +102,12 @@ def taken_words(spellings: Iterable[Spelling]) -> dict[str, str]:
 
 def _candidates(word: str, knowledge: "Knowledge") -> tuple[str, ...]:
     """Heard words that are nearest to a word, one of each meaning."""
-    if len(word) < SHORTEST or not word.isalpha():
-        return ()
     heard = heard_words(knowledge, word)
-    most = 2 if len(word) >= TWO_SLIPS else 1
-    near: dict[int, list[str]] = {}
-    for other in heard:
-        slips = distance(word, other, most) if _may_be(word, other) else None
-        if slips is not None:
-            near.setdefault(slips, []).append(other)
+    near = near_words(word, heard)
     for slips in sorted(near):
         if meant := _of_each_meaning(near[slips], heard, knowledge):
             return meant
     return ()
-
-
-def _may_be(word: str, other: str) -> bool:
-    """Whether a word may be a slip for another by its length and letters."""
-    if not other.isalpha() or other == word:
-        return False
-    return max(len(word), len(other)) >= ONE_SLIP or sorted(word) == sorted(other)
 
 
 def _of_each_meaning(words: Iterable[str], heard: Mapping[str, float], knowledge: "Knowledge") -> tuple[str, ...]:
@@ -138,22 +119,3 @@ def _of_each_meaning(words: Iterable[str], heard: Mapping[str, float], knowledge
             often.setdefault(entry.concept, word)
     most = max((heard[word] for word in often.values()), default=0.0)
     return tuple(word for word in often.values() if heard[word] >= RARELY * most)
-
-
-def distance(word: str, other: str, most: int) -> int | None:
-    """Letters to insert, leave out, replace or swap with a neighbour to make one word of another; None above `most`."""
-    if abs(len(word) - len(other)) > most:
-        return None
-    before: list[int] = []
-    row = list(range(len(other) + 1))
-    for at, letter in enumerate(word, start=1):
-        last, row = row, [at]
-        for place, wanted in enumerate(other, start=1):
-            least = min(last[place] + 1, row[-1] + 1, last[place - 1] + (letter != wanted))
-            if at > 1 and place > 1 and (letter, word[at - 2]) == (other[place - 2], wanted):
-                least = min(least, before[place - 2] + 1)
-            row.append(least)
-        if min(row) > most and min(last) > most:
-            return None
-        before = last
-    return row[-1] if row[-1] <= most else None

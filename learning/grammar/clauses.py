@@ -19,6 +19,8 @@ BEAM = 25
 """Partial readings kept after every word."""
 GAP = 9.0
 NO_REFERENT: Feature = ("reference", "to nothing")
+LINKED: Feature = ("clause", "linked")
+"""Of a second clause with a word before it that is passed over."""
 PARTS = ("action", "entity", "modifier", "shift")
 
 Moves = tuple[tuple[int, int], ...]
@@ -36,6 +38,7 @@ class _Partial:
     goal: Phrase | None
     features: tuple[Feature, ...]
     opening: "_Partial | None"
+    linked: bool = False
 
     def key(self) -> tuple[object, ...]:
         """What matters for how it can go on."""
@@ -45,6 +48,7 @@ class _Partial:
             None if self.entity is None else self.entity.meaning,
             None if self.goal is None else self.goal.meaning,
             None if self.opening is None else self.opening.key(),
+            self.linked and self.opening is None and self.entity is not None,
         )
 
 
@@ -150,6 +154,7 @@ class _Reader:
                         partial.goal,
                         partial.features,
                         partial.opening,
+                        True,
                     ),
                 )
             for after in range(position + 1, length + 1):
@@ -192,6 +197,9 @@ class _Reader:
                 action, entity, goal, order = phrase, None, None, ""
                 features = (*features, clause)
                 score += self.weight(clause)
+                if partial.linked:
+                    features = (*features, LINKED)
+                    score += self.weight(LINKED)
             else:
                 action = phrase
             order += "a"
@@ -211,7 +219,7 @@ class _Reader:
                 return None
             goal = phrase
             order += "g"
-        return _Partial(score, order, action, entity, goal, features, opening)
+        return _Partial(score, order, action, entity, goal, features, opening, _trails(phrase))
 
     def _reading(self, partial: _Partial) -> CommandReading | None:
         if partial.action is None or partial.action.concept is None:
@@ -299,6 +307,13 @@ class _Reader:
             )
             ground = scene.nearest(open_ones or ground, 1 << thing)
         return scene.landing(goal.relation, ground)
+
+
+def _trails(phrase: Phrase) -> bool:
+    """Whether the last word of a phrase is one that is passed over."""
+    while phrase.children:
+        phrase = phrase.children[-1]
+    return phrase.used[-1] + 1 < phrase.after
 
 
 def _refers_back(entity: Phrase) -> bool:

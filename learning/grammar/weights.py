@@ -37,6 +37,8 @@ PRIORS: dict[Feature, float] = {
     # An action is said with what it is done to.
     ("clause", "second", "ag"): -2.0,
     ("clause", "second", "ga"): -2.0,
+    # What is done next is said after a word that says so ("and", "then").
+    ("clause", "linked"): 2.0,
     # Who says "one" has spoken of a thing of its sort before.
     ("reference", "to nothing"): -3.0,
     # "Nearest" is said of something more often than of the nearest one.
@@ -45,7 +47,7 @@ PRIORS: dict[Feature, float] = {
     ("joined", "action"): -1.0,
     # What is beside a thing is nearest to it too, but that says less.
     ("relation", str(BESIDE), "thing"): 0.5,
-    ("relation", str(BESIDE), "place"): -1.0,
+    ("relation", str(BESIDE), "place"): -4.0,
     # What is in a place is on its ground too, but that says less.
     ("relation", str(ABOVE), "place"): -1.0,
     # What is to one side of a place is off the board, or is part of it and called so.

@@ -7,12 +7,15 @@ import numpy as np
 
 from learning.concept_id import Concept
 from learning.grammar.arrangement import Arrangement
+from learning.grammar.innate import ONE
 from learning.grounding.alignment import Observed
 from learning.percept import ShownAction
 
 LARGEST = 1024
 """Most pairs kept. The oldest are forgotten first; none is saved with the knowledge."""
 
+AT_HAND = frozenset((ONE,))
+"""Kinds of meaning that nothing in a scene shows or denies."""
 CERTAIN = 0.5
 """What readings of a larger share say is taken to be told."""
 
@@ -40,10 +43,13 @@ class Episode:
     counted: bool = False
 
     def told(self) -> frozenset[Concept]:
-        """What the readings that did what was shown say for certain, in some words of the sentence."""
+        """What the readings that did what was shown say for certain, in some words of the sentence.
+
+        What any scene allows is left out: where it is told for certain, any rare word may have been read so.
+        """
         amounts: defaultdict[Concept, float] = defaultdict(float)
         for _, concept, amount in self.grounded:
-            if concept is not None:
+            if concept is not None and concept not in AT_HAND:
                 amounts[concept] += amount
         return frozenset(concept for concept, amount in amounts.items() if amount > CERTAIN)
 

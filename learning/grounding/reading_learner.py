@@ -9,7 +9,7 @@ later.
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -56,6 +56,8 @@ SWEEPS = 6
 SELDOM = 60.0
 """Words heard so often at most are aligned from nothing before the memory is read afresh."""
 Grounded = tuple[tuple[str, Concept | None, float], ...]
+LEAST_PART = 0.05
+"""Added to how likely each of some words means what they mean together, so that none is ruled out for ever."""
 LEAST_SHARE = 0.02
 """Readings whose share of the credit is smaller are not counted."""
 
@@ -258,7 +260,7 @@ class ReadingLearner:
         episode.counted = True
         for word, meaning, amount in episode.grounded:
             self.grounding.add(word, meaning, -amount)
-        episode.grounded = _grounded(words, kept, readings, credit)
+        episode.grounded = _grounded(words, kept, readings, credit, self.meanings)
         for word, meaning, amount in episode.grounded:
             self.grounding.add(word, meaning, amount)
 
@@ -314,17 +316,43 @@ def _right(found: Readings, shown: ShownAction) -> tuple[list[CommandReading], l
 
 
 def _grounded(
-    words: tuple[str, ...], kept: tuple[int, ...], readings: list[CommandReading], credit: list[float]
+    words: tuple[str, ...],
+    kept: tuple[int, ...],
+    readings: list[CommandReading],
+    credit: list[float],
+    meanings: Callable[[str], Mapping[Meaning, float]],
 ) -> Grounded:
-    """Which words were used for what, and which were passed over, by readings of some credit."""
+    """Which words were used for what, and which were passed over, by readings of some credit.
+
+    Of words that mean something together ("and put") one is why they do: they share it as likely as each means it.
+    """
     grounded: list[tuple[str, Concept | None, float]] = [
         (words[position], None, 1.0) for position in sorted(set(range(len(words))).difference(kept))
     ]
     for reading, share in zip(readings, credit, strict=True):
-        if share >= LEAST_SHARE:
-            meant = dict(_told(reading))
-            grounded += [(words[original], meant.get(position), share) for position, original in enumerate(kept)]
+        if share < LEAST_SHARE:
+            continue
+        meant = dict(_told(reading))
+        together = _together(reading)
+        for position, original in enumerate(kept):
+            word, concept = words[original], meant.get(position)
+            part = 1.0
+            if concept is not None and position in together:
+                likely = [meanings(words[kept[other]]).get(concept, 0.0) + LEAST_PART for other in together[position]]
+                part = likely[together[position].index(position)] / sum(likely)
+                grounded.append((word, None, share * (1.0 - part)))
+            grounded.append((word, concept, share * part))
     return tuple(grounded)
+
+
+def _together(reading: CommandReading) -> dict[int, tuple[int, ...]]:
+    """For each position of a word that means something together with others, the positions of all of them."""
+    found = {}
+    for phrase in reading.phrases():
+        for leaf in phrase.leaves():
+            if leaf.concept is not None and len(leaf.used) > 1:
+                found.update(dict.fromkeys(leaf.used, leaf.used))
+    return found
 
 
 def _meant(reading: CommandReading) -> Iterator[tuple[int, Concept]]:

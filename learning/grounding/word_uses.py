@@ -1,7 +1,7 @@
 """How the words of a sentence may be read: by alignment at first, by what was validated more and more."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from learning.concept_id import ACTION_SPACE, Concept
@@ -9,6 +9,7 @@ from learning.grammar.innate import (
     ABOVE,
     BESIDE,
     COLLECTIVE,
+    COLLECTIVES,
     COUNTS,
     EXTREMES,
     FURTHEST,
@@ -26,6 +27,7 @@ from learning.grammar.phrase_chart import Use
 from learning.grammar.weights import Weights
 from learning.grounding.alignment import Alignment, Meaning
 from learning.grounding.grounding import Grounding
+from learning.grounding.slips import near_words
 
 PRIOR_WEIGHT = 5.0
 """How many validations the alignment of a word is worth before any came."""
@@ -57,8 +59,12 @@ IT_SHARE = 3.0
 """How much likelier a word is to mean "it" than any other of these: it stands in every other command."""
 PLAIN = 0.5
 """A word that means something with this probability needs no such kind."""
+ESTABLISHED = 3.0
+"""A word that was heard so often is what one that was never heard, and looks like it, is taken for."""
 RARE = 30.0
 """A word heard less often than this may be an action that is seldom called so, or a narrower relation."""
+ANY_ACTION, OFTEN = 0.5, 50.0
+"""How likely a word for one action is one for another, too, and after how many validations half as likely."""
 ACTING = 0.1
 """A word that means some action with this probability may mean any."""
 UNMEASURED_PROBABILITY = 0.02
@@ -106,12 +112,15 @@ class UseTable:
         for meaning, share in self.alignment.meanings(word).items():
             if meaning is not None and meaning.space == HEADING_SPACE:
                 meaning = SIDES[meaning.number]
-            elif kin and meaning == COLLECTIVE:
-                meaning = GROUP
+            elif meaning in COLLECTIVES:
+                meaning = GROUP if kin else COLLECTIVE
             aligned[meaning] = aligned.get(meaning, 0.0) + share
-        validated = self.grounding.counts.get(word)
+        validated: Mapping[Meaning, float] | None = self.grounding.counts.get(word)
         if not validated:
             return aligned
+        if not kin and GROUP in validated:
+            # What things that stand on one another are called is a name of its own unless it resembles theirs.
+            validated = {**validated, COLLECTIVE: validated.get(COLLECTIVE, 0.0) + validated[GROUP], GROUP: 0.0}
         total = max(0.0, sum(validated.values()))
         prior = PRIOR_WEIGHT + PRIOR_SHARE * total
         known = dict.fromkeys((*validated, *aligned))
@@ -138,6 +147,7 @@ class UseTable:
         kept: list[int] = []
         uses: list[Use] = []
         passed: list[float] = []
+        words = [self._as_heard(word) for word in words]
         of_words = [self.meanings(word) for word in words]
         measuring = [means.get(UNIT, 0.0) > MEASURING for means in of_words]
         for position, (word, means) in enumerate(zip(words, of_words, strict=True)):
@@ -155,6 +165,15 @@ class UseTable:
                 uses += found
                 passed.append(skip)
         return WordUses(tuple(kept), tuple(uses), tuple(passed))
+
+    def _as_heard(self, word: str) -> str:
+        """The word, or, where it was never heard, the heard one that it is most likely a slip for."""
+        heard = self.alignment.word_counts
+        if heard.get(word, 0.0) > 0.0:
+            return word
+        established = {other: times for other, times in heard.items() if times >= ESTABLISHED}
+        near = near_words(word, established)
+        return max(near[min(near)], key=lambda other: (established[other], other)) if near else word
 
     def _passed(self, word: str, means: dict[Meaning, float]) -> float:
         return math.log(means.get(None, 0.0) + DOUBT) + PASSED + self.weights.learned.get(passed_feature(word), 0.0)
@@ -203,12 +222,13 @@ class UseTable:
             for meaning in DISPLACING:
                 chosen.setdefault(meaning, UNMEASURED_PROBABILITY / 2)
         learned = self.weights.learned
+        any_action = ANY_ACTION / (1.0 + self.grounding.total(word) / OFTEN)
         found = []
         for meaning, p in chosen.items():
             features: tuple[Feature, ...] = (("means", word, str(meaning)),)
             if meaning.space == ACTION_SPACE:
                 # Words for one action are often words for another: "put" on its own, "put" after "take".
-                p = 0.5 * p + 0.5 * acting / max(1, len(actions))
+                p += any_action * (acting / max(1, len(actions)) - p)
                 features = (*features, ("means", word, ACTION_SPACE))
             score = math.log(p + 0.01) + sum(learned.get(feature, 0.0) for feature in features)
             found.append(Use(position, position + 1, meaning, score, features, word, after))

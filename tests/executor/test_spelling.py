@@ -9,13 +9,14 @@ from executor import Executor
 from executor.execution.answer import Answer
 from executor.execution.evaluation.suite_cases import SYLLABLES
 from executor.execution.session import Session
-from executor.execution.spelling import distance, spellings_of
+from executor.execution.spelling import spellings_of
 from executor.tables.suite_commands import SYLLABLES as TABLE_SYLLABLES
 from executor.talk.said_words import words_of_report
 from executor.word_kinds import WordKind
 from learning import Knowledge
 from learning.concept_id import Concept
 from learning.grounding.ngrams import with_words
+from learning.grounding.slips import distance
 from learning.grounding.tongue import Tongue
 from tests.executor.test_execution import PLAIN
 from twin import World

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from learning.concept_id import Concept
 from learning.grammar.actions import ActionTable
 from learning.grammar.arrangement import Arrangement
 from learning.grammar.board_elements import BoardElements
@@ -83,6 +84,20 @@ def test_the_tree_says_what_was_said(learner: ReadingLearner) -> None:
         ("shape", 7),
         ("colour", 8),
     ]
+
+
+def test_a_word_that_only_ever_comes_with_a_verb_has_no_meaning_of_its_own() -> None:
+    """ "Prendi" and "prendi su": they mean one thing together, and it is the verb that means it."""
+    learner = ReadingLearner()
+    rng, replay = np.random.default_rng(0), np.random.default_rng(1)
+    for _ in range(150):
+        words, scene, shown = lesson(rng)
+        if words[0] == "prendi" and rng.random() < 0.6:
+            words = (words[0], "su", *words[1:])
+        learner.learn(words, scene, shown, ACTIONS, BEARING, replay)
+    take = Concept("action", TAKE)
+    assert learner.meanings("prendi")[take] > 0.7
+    assert learner.meanings("su").get(take, 0.0) < 0.5 * learner.meanings("su")[None]
 
 
 def test_the_same_seed_learns_the_same() -> None:

@@ -1,7 +1,7 @@
 """How the words of a sentence may be read."""
 
 from learning.concept_id import Concept
-from learning.grammar.innate import COUNTS, EXTREMES, FURTHEST, SIDES, UNIT
+from learning.grammar.innate import COLLECTIVE, COUNTS, EXTREMES, FURTHEST, GROUP, SIDES, UNIT
 from learning.grammar.weights import Weights
 from learning.grounding.alignment import Alignment
 from learning.grounding.grounding import Grounding
@@ -67,3 +67,36 @@ def test_uses_know_the_word_after_them() -> None:
     uses = table_of("sinistra", SIDES[2], 20).of(("sinistra", "del", "sinistra"), ()).uses
     assert {use.following for use in uses if use.first == 0} == {"del"}
     assert {use.following for use in uses if use.first > 0} == {SENTENCE_END}
+
+
+def test_a_word_that_was_never_heard_is_read_as_the_one_it_is_a_slip_for() -> None:
+    table = table_of("rosso", RED, 20)
+    assert RED in meanings(table, "rossso")
+    assert RED in meanings(table, "rosos")
+    assert RED not in meanings(table, "grosse")
+
+
+def test_a_word_that_was_heard_is_never_taken_for_a_slip() -> None:
+    table = table_of("rosse", SIDES[0], 20)
+    assert RED not in meanings(table, "rosse")
+
+
+def test_a_name_of_its_own_for_things_on_one_another_is_no_longer_form_of_a_name_of_one() -> None:
+    """ "Cubes" says what a stack is made of, "stack" does not, whatever the sentences that have both made of it."""
+    table = table_of("cubo", Concept("shape", 0), 50)
+    for word in ("cubos", "pila"):
+        table.alignment.observe((word,), (RED,))
+        table.grounding.add(word, GROUP, 20.0)
+    assert GROUP in meanings(table, "cubos")
+    assert COLLECTIVE in meanings(table, "pila")
+    assert GROUP not in meanings(table, "pila")
+
+
+def test_a_word_that_was_often_said_of_one_action_is_hardly_said_of_another() -> None:
+    take, put = Concept("action", 2), Concept("action", 3)
+
+    def odds(times: int) -> float:
+        uses = {use.concept: use.score for use in table_of("prendi", take, times).of(("prendi",), (2, 3)).uses}
+        return uses[take] - uses[put]
+
+    assert odds(1000) > odds(5) + 1.0
