@@ -7,9 +7,8 @@ sentences of the recent past are looked at again after each new one, so that ear
 later.
 """
 
-import math
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +20,6 @@ from learning.grammar.arrangement import Arrangement
 from learning.grammar.board_elements import BoardElements
 from learning.grammar.clauses import CommandReading, read_clauses
 from learning.grammar.description import Description, Sense
-from learning.grammar.in_vain import words_in_vain
 from learning.grammar.pcfg import Pcfg
 from learning.grammar.phrase import Feature
 from learning.grammar.phrase_chart import PhraseChart
@@ -31,10 +29,11 @@ from learning.grammar.weights import Weights
 from learning.grounding.alignment import ENOUGH, Alignment, Meaning
 from learning.grounding.attention import salient_meanings, ways_of_speaking
 from learning.grounding.collocations import Collocations
+from learning.grounding.credit import LEAST_SHARE, add_features, grounded_words, right_readings
 from learning.grounding.grounding import Grounding
 from learning.grounding.memory import LARGEST, Episode, Memory
 from learning.grounding.shares import shares_of
-from learning.grounding.word_uses import UseTable, WordUses, passed_feature
+from learning.grounding.word_uses import UseTable, WordUses
 from learning.percept import ShownAction
 from learning.saved_numbers import saved_count
 
@@ -55,11 +54,6 @@ SWEEPS = 6
 """How often the memory is aligned again before it is read afresh."""
 SELDOM = 60.0
 """Words heard so often at most are aligned from nothing before the memory is read afresh."""
-Grounded = tuple[tuple[str, Concept | None, float], ...]
-LEAST_PART = 0.05
-"""Added to how likely each of some words means what they mean together, so that none is ruled out for ever."""
-LEAST_SHARE = 0.02
-"""Readings whose share of the credit is smaller are not counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,18 +217,18 @@ class ReadingLearner:
     def _credit(self, episode: Episode, scene: BoardElements, actions: ActionTable) -> bool:
         words, shown = episode.words, episode.shown
         found = self.read(words, scene, actions)
-        right, credit = _right(found, shown)
+        right, credit = right_readings(found.readings, shown)
         if not right:
             found = self.read(words, scene, actions, open_minded=True)
-            right, credit = _right(found, shown)
+            right, credit = right_readings(found.readings, shown)
         if not right:
             return False
         kept_words = tuple(words[position] for position in found.kept)
         gradient: defaultdict[Feature, float] = defaultdict(float)
         for reading, share in zip(right, credit, strict=True):
-            _add_features(gradient, kept_words, reading, share)
+            add_features(gradient, kept_words, reading, share)
         for reading, share in zip(found.readings, found.shares(), strict=True):
-            _add_features(gradient, kept_words, reading, -share)
+            add_features(gradient, kept_words, reading, -share)
         self._ground(episode, found.kept, right, credit)
         self.weights.follow(gradient)
         return True
@@ -260,7 +254,7 @@ class ReadingLearner:
         episode.counted = True
         for word, meaning, amount in episode.grounded:
             self.grounding.add(word, meaning, -amount)
-        episode.grounded = _grounded(words, kept, readings, credit, self.meanings)
+        episode.grounded = grounded_words(words, kept, readings, credit, self.meanings)
         for word, meaning, amount in episode.grounded:
             self.grounding.add(word, meaning, amount)
 
@@ -307,76 +301,3 @@ class ReadingLearner:
         learner.collocations = Collocations.from_json(data.get("collocations", {}))  # older files have none
         learner._uses = UseTable(learner.alignment, learner.grounding, learner.weights)
         return learner
-
-
-def _right(found: Readings, shown: ShownAction) -> tuple[list[CommandReading], list[float]]:
-    """The readings that do what was shown, and their shares of the credit."""
-    right = [reading for reading in found.readings if reading.does(shown.moved, shown.placement)]
-    return right, shares_of([reading.score - math.log(reading.choices) for reading in right])
-
-
-def _grounded(
-    words: tuple[str, ...],
-    kept: tuple[int, ...],
-    readings: list[CommandReading],
-    credit: list[float],
-    meanings: Callable[[str], Mapping[Meaning, float]],
-) -> Grounded:
-    """Which words were used for what, and which were passed over, by readings of some credit.
-
-    Of words that mean something together ("and put") one is why they do: they share it as likely as each means it.
-    """
-    grounded: list[tuple[str, Concept | None, float]] = [
-        (words[position], None, 1.0) for position in sorted(set(range(len(words))).difference(kept))
-    ]
-    for reading, share in zip(readings, credit, strict=True):
-        if share < LEAST_SHARE:
-            continue
-        meant = dict(_told(reading))
-        together = _together(reading)
-        for position, original in enumerate(kept):
-            word, concept = words[original], meant.get(position)
-            part = 1.0
-            if concept is not None and position in together:
-                likely = [meanings(words[kept[other]]).get(concept, 0.0) + LEAST_PART for other in together[position]]
-                part = likely[together[position].index(position)] / sum(likely)
-                grounded.append((word, None, share * (1.0 - part)))
-            grounded.append((word, concept, share * part))
-    return tuple(grounded)
-
-
-def _together(reading: CommandReading) -> dict[int, tuple[int, ...]]:
-    """For each position of a word that means something together with others, the positions of all of them."""
-    found = {}
-    for phrase in reading.phrases():
-        for leaf in phrase.leaves():
-            if leaf.concept is not None and len(leaf.used) > 1:
-                found.update(dict.fromkeys(leaf.used, leaf.used))
-    return found
-
-
-def _meant(reading: CommandReading) -> Iterator[tuple[int, Concept]]:
-    for phrase in reading.phrases():
-        for leaf in phrase.leaves():
-            if leaf.concept is not None:
-                for position in leaf.used:
-                    yield position, leaf.concept
-
-
-def _told(reading: CommandReading) -> Iterator[tuple[int, Concept]]:
-    """What words meant, without ranks and sides that ruled nothing out: who says such a word may say nothing by it."""
-    idle = {position for phrase in reading.phrases() for part in phrase.walk() for position in words_in_vain(part)}
-    return ((position, concept) for position, concept in _meant(reading) if position not in idle)
-
-
-def _add_features(
-    gradient: defaultdict[Feature, float], words: tuple[str, ...], reading: CommandReading, amount: float
-) -> None:
-    if abs(amount) < 1e-3:
-        return
-    for feature in reading.all_features():
-        gradient[feature] += amount
-    used = {position for position, _ in _meant(reading)}
-    for position, word in enumerate(words):
-        if position not in used:
-            gradient[passed_feature(word)] += amount
