@@ -1,7 +1,7 @@
 """A command of several steps: cut where a step can begin, so that every part is understood in the world as it is then.
 
 No word is known to join steps. A step begins with a word that was learned to name an action; what stands before it may
-be words that were learned to mean nothing, or one that was never heard beside such a word or a punctuation mark.
+be words that were learned to mean nothing, and after such a word or a punctuation mark ones that were never heard.
 """
 
 import re
@@ -100,11 +100,17 @@ class _Splitter(Generic[View]):
                 and (self.doer.joins(words[before - 1]) or not self.doer.knows(words[before - 1]))
             ):
                 before -= 1
-            strange = [word for word in words[before:after] if not self.doer.knows(word)]
-            if not strange:
+            # A word that was never heard joins steps where it comes after one that does, or after a mark: before that
+            # it is the end of the first step ("the red what-d'you-call-it and ...").
+            while before < after and not self._opens_joint(words, before, offset):
+                before += 1
+            if all(self.doer.knows(word) for word in words[before:after]):
                 yield after, after
-            elif len(strange) < after - before or offset + before in self.marks or offset + after in self.marks:
+            else:
                 yield before, after
+
+    def _opens_joint(self, words: tuple[str, ...], at: int, offset: int) -> bool:
+        return self.doer.joins(words[at]) or offset + at in self.marks
 
 
 def _makes_sense(understood: Understood) -> bool:

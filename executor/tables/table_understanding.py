@@ -20,6 +20,9 @@ from learning.interpretation.table_interpreter import TableGoal, TableInterprete
 if TYPE_CHECKING:
     from learning import Knowledge
 
+OFTEN, FAR_FETCHED = 10.0, 0.05
+"""A word that was read so often is not taken for what it meant in a smaller share of these readings."""
+
 
 @dataclass(frozen=True, slots=True)
 class TableUnderstood(Understood):
@@ -168,6 +171,8 @@ class TableUnderstanding:
         if reading.unlearned:
             word = reading.unlearned[0]
             return Answer.UNKNOWN_WORD, offer_again(word, entry_of(self.knowledge, word).heard)
+        if strained := self._strained(reading):
+            return Answer.IMPOSSIBLE, f"nothing here is {quoted(strained)}"
         if reading.tree is None or reading.action is None:
             return Answer.REFUSED, "no word says what to do" if reading.tree is not None else reading.explanation
         if not reading.things:
@@ -186,6 +191,21 @@ class TableUnderstanding:
             passed = f": I could make nothing of {quoted(reading.unheeded)}" if reading.unheeded else ""
             return Answer.REFUSED, f"where it shall go was not understood{passed}"
         return None
+
+    def _strained(self, reading: TableReading) -> tuple[str, ...]:
+        """Words that are read as what they hardly ever meant: what they mostly mean is not here."""
+        tongue = self.knowledge.table_language.tongues.get(script_of(reading.words))
+        if reading.tree is None or tongue is None:
+            return ()
+        found = []
+        for node in reading.tree.nodes():
+            said = " ".join(reading.words[node.first - 1 : node.last])
+            if node.concept is None or said not in tongue.grounding.counts:
+                continue
+            total = tongue.grounding.total(said)
+            if total >= OFTEN and tongue.grounding.counts[said].get(node.concept, 0.0) < FAR_FETCHED * total:
+                found.append(said)
+        return tuple(found)
 
     def _chosen(self, reading: TableReading, view: TableView, choices: tuple[int, ...]) -> TableReading:
         """A reading with what was chosen where several things fitted, as what is done or as where it goes."""

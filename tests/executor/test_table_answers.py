@@ -1,5 +1,6 @@
 """Answers at tables to words that are mistyped, never heard, or heard and not understood yet."""
 
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from executor.lexicon import entry_of
 from executor.talk.said_words import words_of_report
 from executor.word_kinds import WordKind
 from learning import Knowledge
+from learning.concept_id import Concept
 from tests.executor.table_cases import CASES, knowledge_of
 from twin import World
 
@@ -72,3 +74,23 @@ def test_a_word_that_means_something_only_with_another_is_no_unknown_one(tmp_pat
         executor = Executor(world, knowledge, np.random.default_rng(0))
         assert executor.preview("اضغط على الكرتونة").answer is Answer.PLANNED
         executor.doer.close()
+
+
+@pytest.mark.parametrize("joint", [" and glorbin ", ", glorbin "])
+def test_a_strange_word_may_join_two_steps_after_what_does_so(baxter: Executor, joint: str) -> None:
+    report = baxter.preview(f"pick up the orange apple{joint}put it to the left of the blue cube")
+    assert report.answer is Answer.PLANNED and report.reason == "these are the 2 steps"
+
+
+def test_a_strange_word_before_what_joins_two_steps_is_never_dropped(baxter: Executor) -> None:
+    """It may be the name of what is meant."""
+    report = baxter.preview("pick up the orange glorbin and put it to the left of the blue cube")
+    assert report.answer is Answer.UNKNOWN_WORD and report.unknown == ("glorbin",)
+
+
+def test_a_name_is_not_taken_for_what_it_hardly_ever_meant(baxter: Executor) -> None:
+    counts = baxter.knowledge.table_language.tongues["LATIN"].grounding.counts
+    (apple,) = counts["apple"]
+    counts["apple"] = defaultdict(float, {Concept("shape", 2): 60.0, apple: 1.0})
+    report = baxter.preview("pick up the apple")
+    assert report.answer is Answer.IMPOSSIBLE and report.reason == "nothing here is “apple”"
