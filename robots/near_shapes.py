@@ -14,7 +14,7 @@ from .near_kernel import BOX, CLOUD, CYLINDER, SPHERE, IntArray
 from .obstacle import Obstacle
 from .pose import FloatArray, Pose
 
-KNOWN = 1000
+KNOWN = 100
 """So many different things' shapes are kept."""
 
 

@@ -20,6 +20,8 @@ FEW_TIMES = 4
 """once that was heard so many times."""
 LEAST_TRUE = 0.25
 """and what it means must be there so often when something of that feature space is,"""
+CALLED_SO = 0.8
+"""unless it is seldom there without the n-gram: what perception divides into many kinds has one name."""
 ACTION_LIFT = 2.0
 """For actions so much more often, as moving goes with words about places; a word that is mostly passed over may say an
 action that it goes with surely more often than any does,"""
@@ -88,7 +90,11 @@ class Evidence:
             return share >= ACTION_LIFT * usual or (sure and self._mostly_passed(ngram))
         if concept.space == ACTION_SPACE:
             return share >= LEAST_ACTION
-        return sure and share >= max(LEAST_TRUE, LEAST_LIFT * usual)
+        if not sure or share < LEAST_LIFT * usual:
+            return False
+        together = row.get(concept, 0.0)
+        only = together >= FEW_TIMES and together >= CALLED_SO * matrix.concept_counts.get(concept, 0.0)
+        return share >= LEAST_TRUE or only
 
     def denied(self, ngram: str, concept: Concept) -> bool:
         """Whether an n-gram was heard often enough to know that it does not mean what a part of it may mean."""

@@ -35,3 +35,19 @@ def test_what_goes_with_an_action_as_chance_has_it_does_not_say_it() -> None:
 def test_a_word_with_another_meaning_says_an_action_only_where_it_nearly_always_goes_with_it() -> None:
     assert not heard("left", *[PICK] * 21, *[MOVE] * 15, read_as=LEFT).borne_out("left", PICK)
     assert heard("left", *[PICK] * 30, *[MOVE] * 6, read_as=LEFT).borne_out("left", PICK)
+
+
+def test_a_kind_that_has_one_name_is_what_the_name_means_however_many_kinds_that_names() -> None:
+    """Perception may divide what people call by one word into many kinds, each seldom there when it is said."""
+    kinds = [Concept("shape", number) for number in range(6)]
+    matrix = CorrelationMatrix()
+    for kind in kinds * 5:
+        matrix.observe(("tub",), (kind, any_like(kind)))
+    other = Concept("shape", 9)
+    for _ in range(60):
+        matrix.observe(("can",), (other, any_like(other)))
+    for _ in range(8):  # the last of the kinds is called otherwise mostly
+        matrix.observe(("can",), (kinds[-1], any_like(kinds[-1])))
+    evidence = Evidence(matrix, Grounding(), {})
+    assert all(evidence.borne_out("tub", kind) for kind in kinds[:-1])
+    assert not evidence.borne_out("tub", kinds[-1])

@@ -123,3 +123,14 @@ def test_depths_come_before_narrower_openings_and_tilts_last() -> None:
     assert all(each.approach @ each.grasp.approach > 1 - 1e-9 for each in proposals[:untilted])
     assert all(each.approach @ each.grasp.approach < 0.95 for each in proposals[untilted:])
     assert all(each.width == each.grasp.width for each in proposals)
+
+
+@pytest.mark.parametrize(
+    ("name", "axes", "turn"), [("red_marker", "x", np.pi / 4), ("red_cube", "xyz", np.pi / 2)], ids=["marker", "cube"]
+)
+def test_what_may_roll_can_be_held_from_above_whichever_side_is_up(name: str, axes: str, turn: float) -> None:
+    for axis in axes:
+        for times in range(round(2 * np.pi / turn)):
+            lies = Pose(np.zeros(3), Rotation.from_euler(axis, times * turn).as_quat())
+            proposals = grasp_poses(object_model(name), lies, GRIPPERS["left"])
+            assert min(each.approach[2] for each in proposals) == pytest.approx(-1.0), (axis, times)

@@ -146,7 +146,8 @@ def test_grasps_fit_the_gripper_and_touch_the_surface(model: ObjectModel) -> Non
         assert np.linalg.norm(grasp.closing) == pytest.approx(1)
         assert np.linalg.norm(grasp.approach) == pytest.approx(1)
         assert abs(grasp.closing @ grasp.approach) < 1e-9
-        assert grasp.approach[2] == pytest.approx(-1) or grasp.approach[2] == pytest.approx(0)
+        may_roll = model.name.endswith(("_cube", "_marker"))
+        assert grasp.approach[2] == pytest.approx(-1) or grasp.approach[2] == pytest.approx(0) or may_roll
         # A finger tip may reach 5 mm below its pad's middle, and clears the table by 2 mm.
         assert grasp.centre[2] + model.half_extents[2] >= 0.007 - 1e-9
     for pad in pads[:: max(1, len(pads) // 8)]:

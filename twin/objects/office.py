@@ -34,7 +34,14 @@ def marker(rgb: Rgb) -> Blueprint:
     # To contact it is one piece.
     touched = Solid(collar.mesh, collar.density, _GREY, _barrel([*back, *front], thick, _GREY).parts)
     body, cap = (Solid(_barrel(end, thick, rgb).mesh, _INK, colour) for end, colour in ((back, rgb), (front, dull)))
-    return Blueprint([body, touched, cap], [pinch((x, 0, thick / 2), (0, 1, 0), thick) for x in (0.0, -0.012, -0.024)])
+    # Whichever side is up: a marker that was put down may have rolled.
+    turns = [np.pi / 4 * side for side in (0, 1, -1, 2, -2, 3, -3, 4)]
+    grasps = [
+        pinch((x, 0, thick / 2), (0, np.cos(turn), np.sin(turn)), thick, (0, np.sin(turn), -np.cos(turn)))
+        for turn in turns
+        for x in (0.0, -0.012, -0.024)
+    ]
+    return Blueprint([body, touched, cap], grasps)
 
 
 def stapler(rgb: Rgb) -> Blueprint:
