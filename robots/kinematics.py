@@ -180,9 +180,13 @@ def frame_positions(urdf: Path, joints: Mapping[str, float], frames: Sequence[st
     return [data.oMf[model.getFrameId(frame)].translation.copy() for frame in frames]
 
 
+_ORIGIN = np.zeros(3)
+
+
 def quaternion_xyzw(rotation: FloatArray) -> FloatArray:
     """Unit quaternion (4,) of a rotation matrix (3, 3), with w >= 0."""
-    values = pin.Quaternion(rotation).coeffs()
+    # Not by pin.Quaternion(rotation): each of those takes 80 bytes that nobody gives back.
+    values = pin.SE3ToXYZQUAT(pin.SE3(np.asarray(rotation, dtype=float), _ORIGIN))[3:]
     return np.asarray(-values if values[3] < 0 else values)
 
 

@@ -2,20 +2,12 @@
 
 import ctypes
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from executor.execution.evaluation.endurance import resident
 from executor.free_memory import give_back_free_memory
-
-MEGABYTE = 1_000_000
-
-
-def resident() -> float:
-    """Memory of this process [MB]."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * 4096 / MEGABYTE
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="/proc tells the memory of a process on Linux alone")
