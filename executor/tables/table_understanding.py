@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from learning import Knowledge
 
 OFTEN, FAR_FETCHED = 10.0, 0.05
-"""A word that was read so often is not taken for what it meant in a smaller share of these readings."""
+"""A word that meant something so often is not taken for what it meant in a smaller share of these readings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,9 +202,10 @@ class TableUnderstanding:
             said = " ".join(reading.words[node.first - 1 : node.last])
             if node.concept is None or said not in tongue.grounding.counts:
                 continue
-            total = tongue.grounding.total(said)
-            if total >= OFTEN and tongue.grounding.counts[said].get(node.concept, 0.0) < FAR_FETCHED * total:
-                found.append(said)
+            row = tongue.grounding.counts[said]
+            meant = sum(count for concept, count in row.items() if concept is not None)
+            if row.get(None, 0.0) < meant >= OFTEN and row.get(node.concept, 0.0) < FAR_FETCHED * meant:
+                found.append(said)  # a word that mostly means nothing may say anything now and then
         return tuple(found)
 
     def _chosen(self, reading: TableReading, view: TableView, choices: tuple[int, ...]) -> TableReading:

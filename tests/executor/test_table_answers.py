@@ -94,3 +94,10 @@ def test_a_name_is_not_taken_for_what_it_hardly_ever_meant(baxter: Executor) -> 
     counts["apple"] = defaultdict(float, {Concept("shape", 2): 60.0, apple: 1.0})
     report = baxter.preview("pick up the apple")
     assert report.answer is Answer.IMPOSSIBLE and report.reason == "nothing here is “apple”"
+
+
+def test_a_word_that_mostly_means_nothing_may_be_heard_as_anything(baxter: Executor) -> None:
+    counts = baxter.knowledge.table_language.tongues["LATIN"].grounding.counts
+    (apple,) = counts["apple"]
+    counts["apple"] = defaultdict(float, {None: 300.0, Concept("shape", 2): 40.0, apple: 1.0})
+    assert "apple" not in baxter.preview("pick up the apple").reason
