@@ -1,4 +1,4 @@
-"""What counts say for an action: verbs are told from words that are only heard where something is done."""
+"""What counts bear out of a meaning: verbs that are also steps of other actions, and names of many kinds."""
 
 from learning.concept_id import Concept
 from learning.grounding.correlation import CorrelationMatrix
