@@ -39,6 +39,8 @@ FARTHEST_ASIDE = 3.0
 """Further off a direction than so many standard deviations nobody ever meant it."""
 TYPICAL_GAP, WIDEST_GAP = 0.05, 0.15
 """Room that people leave between things that are beside each other, usually and at most [m]."""
+FARTHEST_BESIDE = ADJACENT - 0.05
+"""Nothing is put beside another with the centres further apart [m]: near where the words end they are hardly meant."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,7 +194,7 @@ def _by(
         return
     directions = _directions(concepts, spaces)
     typical = float(things.radius[ground] + things.radius[moved]) + TYPICAL_GAP
-    farthest = min(typical - TYPICAL_GAP + WIDEST_GAP, ADJACENT)
+    farthest = min(typical - TYPICAL_GAP + WIDEST_GAP, FARTHEST_BESIDE)
     for distance in np.linspace(0.5 * typical, farthest, DISTANCES):
         for angle in 2.0 * np.pi * np.arange(ANGLES) / ANGLES:
             way = np.array([np.cos(angle), np.sin(angle)])

@@ -249,8 +249,12 @@ def test_referents_are_ringed_questions_answered_and_deeds_stopped_undone_and_ma
             assert np.allclose(page.status["tools"]["arm"]["position"], still, atol=1e-4)
             assert page.status["stopped"] and await problems(tab) == []
             await asyncio.sleep(0.8)  # a stop that is pressed twice is not released by that
+            place = "(e => [e.getBoundingClientRect().x, e.getBoundingClientRect().y])(document.querySelector('#undo'))"
+            before = await tab.value(place)
             await page.click("#go-on")
             await page.until(lambda: not page.status["stopped"])
+            await tab.until("!document.querySelector('#go-on')")
+            assert await tab.value(place) == before  # a second click there presses nothing
             await page.click("#undo")
             await page.answered("undone")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from executor.tables.places import LEAST_ROOM, TableThings, spots_for
+from executor.tables.places import FARTHEST_BESIDE, LEAST_ROOM, TableThings, spots_for
 from learning.concept_id import Concept
 from learning.concepts import TABLE, ConceptSpaces
 from learning.concepts.gaussian import Gaussian
@@ -62,6 +62,27 @@ def test_beside_a_thing_is_in_the_direction_that_is_meant_and_not_on_others(way:
     offset = spots[0].position - table.location[1]
     assert offset[:2] / np.linalg.norm(offset[:2]) == pytest.approx(way[:2], abs=0.27)  # a grid of 15 degrees
     assert all(meant <= relation_of(spot.position - table.location[1], known) for spot in spots)
+
+
+def test_beside_long_things_among_others_is_not_so_far_off_that_it_is_hardly_meant() -> None:
+    known = spaces()
+    table = TableThings(
+        np.array([[0.5, -0.3, 0.02], [0.6, 0.0, 0.02], [0.6, 0.1, 0.02]]),
+        np.array([[0.16, 0.05, 0.04], [0.16, 0.05, 0.04], [0.02, 0.02, 0.04]]),
+    )
+    left = frozenset({direction(known, [0, 1.0, 0])})
+    off = [
+        np.linalg.norm((spot.position - table.location[1])[:2])
+        for spot in spots_for(TableGoal(left, (1,)), 0, table, known, resting())
+    ]
+    assert off and max(off) <= FARTHEST_BESIDE
+    # Where only places further off are free, there is none.
+    wall = np.array([[0.6 + x, y, 0.02] for x in np.arange(-0.16, 0.17, 0.04) for y in np.arange(0.02, 0.2, 0.04)])
+    crowd = TableThings(
+        np.vstack([table.location[:2], wall]),
+        np.vstack([table.extent[:2], np.tile([0.03, 0.03, 0.04], (len(wall), 1))]),
+    )
+    assert spots_for(TableGoal(left, (1,)), 0, crowd, known, resting()) == []
 
 
 def test_onto_a_thing_is_on_its_top() -> None:

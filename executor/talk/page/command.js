@@ -131,7 +131,6 @@ export class CommandLine {
     if (this.mode === "review") {
       found.push(["learn-here", "Keep and learn", () => this.does.learn(), this.yours && !this.talk.learning, "primary narrow"]);
     }
-    if (this.stopped) found.push(["go-on", "Release the stop", () => this.does.release(), this.yours]);
     (answer.options ?? []).forEach(([thing, name], i) => found.push([`option-${i + 1}`, `${i + 1}. ${name}`,
       () => this.does.say(this.at_once.checked ? "do" : "read", {text: sentence, choice: thing}), free]));
     (answer.spellings ?? []).forEach(([word, meant], i) => found.push([`spelling-${i + 1}`, `“${word}”`, () => {
@@ -143,6 +142,8 @@ export class CommandLine {
     }
     if (answer.can_be_wrong) found.push(["wrong", "That was wrong", () => this.does.say("wrong"), free]);
     if (undo) found.push(["undo", "Undo", () => this.does.say("undo"), free]);
+    // It goes when it is pressed: as the last one, so that no other comes under the mouse.
+    if (this.stopped) found.push(["go-on", "Release the stop", () => this.does.release(), this.yours]);
     return found;
   }
 
