@@ -52,12 +52,12 @@ def surely_means(word: str, knowledge: "Knowledge") -> Concept | None:
 
 def passed_over(words: Sequence[str], tree: "RclNode | None", knowledge: "Knowledge") -> tuple[str, ...]:
     """Words that surely mean something and have no part in a reading: acting on it would do something else."""
-    used: dict[int, str] = {}
+    used: dict[int, Concept] = {}
     done: set[Concept] = set()
     within: set[int] = set()
     for node in tree.nodes() if tree else ():
         if node.concept is not None:
-            used.update(dict.fromkeys(range(node.first - 1, node.last), node.concept.space))
+            used.update(dict.fromkeys(range(node.first - 1, node.last), node.concept))
             done.add(node.concept)
         elif node.label == "entity":
             within.update(range(node.first - 1, node.last))
@@ -69,17 +69,34 @@ def passed_over(words: Sequence[str], tree: "RclNode | None", knowledge: "Knowle
         if refers(word, knowledge) or (nowhere and _mostly(word, knowledge, ("relation", "side"))):
             lost.append(word)
             continue
+        beside = [at for at in (position - 1, position + 1) if at in used and used[at].space in LOOKS]
+        if any(_tells_more(word, words[at], used[at], knowledge) for at in beside):
+            lost.append(word)
+            continue
         concept = surely_means(word, knowledge)
         if concept is None:
             continue
-        if concept.space in LOOKS and concept.space in (used.get(position - 1), used.get(position + 1)):
-            continue  # part of a name of two words, such as a shade
+        if concept.space in (used[at].space for at in beside):
+            continue  # the less telling part of a name of two words, such as a shade
         telling = concept.space in (*LOOKS, *TELLING_SPACES) or concept in TELLING
         # No other thing is done in the middle of the name of a thing ("the red and blue tower").
         acting = concept.space == ACTION_SPACE and concept not in done and position not in within
         if telling or (acting and not _beside_action(words, position, used, knowledge)):
             lost.append(word)
     return tuple(dict.fromkeys(lost))
+
+
+def _tells_more(word: str, other: str, means: Concept, knowledge: "Knowledge") -> bool:
+    """Whether a word mostly says that another next to it does not mean its usual look: "light" blue is no blue.
+
+    The rarer of two words in a name is the one that tells ("sky" of "sky blue").
+    """
+    row = _uses(word, knowledge)
+    total = sum(row.values())
+    if total < ESTABLISHED or total >= sum(_uses(other, knowledge).values()):
+        return False
+    looks = sum(count for each, count in row.items() if each is not None and each.space == means.space)
+    return looks - row.get(means, 0.0) > SURE * total
 
 
 def far_fetched(words: Sequence[str], tree: "RclNode | None", knowledge: "Knowledge") -> tuple[str, ...]:

@@ -141,6 +141,9 @@ class BoardUnderstanding:
         if len(things) > 1:
             return self._asked(found, view, [_index(percept, each) for each in things], "entity")
         rivals = self._rival_grounds(best, percept, goals[0].object_id)
+        if len(rivals) < 2 and best is not None:
+            one_each = self._one_of_several(words, percept, best)
+            rivals = self._rival_grounds(one_each, percept, goals[0].object_id)
         if len(rivals) < 2:
             return found
         for index, mask in rivals.items():
@@ -180,6 +183,21 @@ class BoardUnderstanding:
                 top = ground if ground < scene.count else scene.support[scene.columns[ground]]
                 places[mask & scene.usable] = top
         return {top: mask for mask, top in places.items()}
+
+    def _one_of_several(
+        self, words: tuple[str, ...], percept: "Percept", best: CommandReading
+    ) -> CommandReading | None:
+        """A reading of a destination as one block of several, that is only liked less for leaving open which of them.
+
+        "The cube" can be said of a tower of cubes, and there may be one tower only.
+        """
+        scene, moved = self._scene(percept), {thing for thing, _ in best.moves}
+        towers = [each for each in _told_by(best) if scene.place(each) is None]
+        if not towers or _grounds(best, scene.count):
+            return None
+        found = (each for each in self._read(words, scene).readings if _grounds(each, scene.count))
+        same = (each for each in found if {thing for thing, _ in each.moves} == moved and each.action == best.action)
+        return next((each for each in same if self._plausible(each) > self._plausible(best)), None)
 
     # Not understood, or not as a whole: why.
 
@@ -307,10 +325,15 @@ class BoardUnderstanding:
         return moved, int(((percept.placements - goal.position) ** 2).sum(axis=1).argmin())
 
 
+def _told_by(reading: CommandReading) -> list[int]:
+    """Indices of the blocks, towers and places that a destination is told by."""
+    goal = reading.clauses[-1].goal
+    return [] if goal is None else list(bits(cast(Modifier, goal.meaning).ground))
+
+
 def _grounds(reading: CommandReading, count: int) -> list[int]:
     """Indices of the blocks, of so many, that a destination is told by."""
-    goal = reading.clauses[-1].goal
-    return [] if goal is None else [each for each in bits(cast(Modifier, goal.meaning).ground) if each < count]
+    return [each for each in _told_by(reading) if each < count]
 
 
 def _referents(
