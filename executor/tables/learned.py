@@ -1,14 +1,12 @@
 """What is known of a table before commands are asked: learned from the robot's scripted collection, once, and kept."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
 from executor.collections import LeedsCollection, OrderingCollection, make_collection
-from executor.execution.evaluation.learned import Learned
-from executor.files import new_folder, written_whole
-from learning import Learner
-from learning.grounding.ngrams import words_of
+from executor.execution.evaluation.learned import Kept, Learned
+from executor.files import new_folder
+from learning import Knowledge, Learner
 from learning.perception.stage import perceive_demos
 from robots.cache import user_folder
 
@@ -38,20 +36,17 @@ def from_table_collection(
     """
     count = usual_demos(robot, demos)
     home = new_folder(user_folder("execution") if folder is None else folder)
-    name = f"{robot}_{count}_{seed}"
-    path, said = home / f"{name}.json", home / f"{name}_sentences.json"
-    if not (path.is_file() and said.is_file()):
+    kept = Kept.of(home, f"{robot}_{count}_{seed}")
+    if not kept.complete:
         shown = new_folder(home / f"{robot}_{seed}")
         make = LeedsCollection if robot == "baxter" else OrderingCollection
         made = make_collection(make(shown, seed, LANGUAGES), range(count), jobs=jobs, on_demo=on_demo)
-        sentences = _learn([each.path for each in made if each.done], shown / "observations", path, seed, jobs)
-        with written_whole(said) as partial:
-            partial.write_text(json.dumps(sentences, ensure_ascii=False), encoding="utf-8")
-    return Learned(path, frozenset(words_of(each) for each in json.loads(said.read_text(encoding="utf-8"))))
+        kept.write(*_learn([each.path for each in made if each.done], shown / "observations", seed, jobs))
+    return kept.read()
 
 
-def _learn(demos: list[Path], cache: Path, path: Path, seed: int, jobs: int) -> list[str]:
-    """Learn from recorded demos; returns all their sentences."""
+def _learn(demos: list[Path], cache: Path, seed: int, jobs: int) -> tuple[Knowledge, set[str]]:
+    """Learn from recorded demos; returns all their sentences, too."""
     from teleop import load_demo
 
     learner = Learner(seed=seed)
@@ -63,5 +58,4 @@ def _learn(demos: list[Path], cache: Path, path: Path, seed: int, jobs: int) -> 
         learner.study(done.observation().observation, utterances)
         heard.update(utterances)
     learner.settle()
-    learner.knowledge.save(path)
-    return sorted(heard)
+    return learner.knowledge, heard
