@@ -19,6 +19,8 @@ FORCE = 8.0
 """Force [N] with which an object is pressed where no demo tells."""
 LOWEST_RISE = 0.03
 """A hand lifts no object less than this [m]: it would not be clear of what stands around it."""
+SELDOM_LESS = 1.5
+"""So many standard deviations below the mean is what is seldom less."""
 LEAST_FORCE = 1.0
 """No less force [N] is told from what the wrist carries."""
 
@@ -65,6 +67,21 @@ def quantities_of(graphlet: ActionGraphlet, statistics: ActionStatistics | None)
         force=_forces(graphlet, statistics),
         durations=durations,
     )
+
+
+def least_travel(statistics: ActionStatistics | None) -> float:
+    """How far an object was seldom brought less than [m], by its demos.
+
+    Args:
+        statistics: Gaussians of the action's states; None where nothing was measured.
+    """
+    if statistics is None:
+        return 0.0
+    for number in reversed(range(len(statistics.states))):
+        mean, spread = statistics.mean(number, "travel"), statistics.spread(number, "travel")
+        if mean is not None and spread is not None:
+            return max(0.0, float(mean[0]) - SELDOM_LESS * float(spread[0]))
+    return 0.0
 
 
 def _rise(graphlet: ActionGraphlet, statistics: ActionStatistics) -> float:

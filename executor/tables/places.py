@@ -31,6 +31,8 @@ FIRST_SPOTS = 40
 """The best of all places, from which those are taken"""
 APART = 0.05
 """so far apart [m]."""
+OUTLINE = 7
+"""Points on each side of a thing whose distance to others is looked at."""
 ANGLES = 24
 DISTANCES = 8
 ASIDE_COST = 5.0
@@ -39,6 +41,8 @@ FARTHEST_ASIDE = 3.0
 """Further off a direction than so many standard deviations nobody ever meant it."""
 TYPICAL_GAP, WIDEST_GAP = 0.05, 0.15
 """Room that people leave between things that are beside each other, usually and at most [m]."""
+HARDLY_MOVED = 0.03
+"""What is missing from how far people bring things costs as many standard deviations as this goes into it [m]."""
 FARTHEST_BESIDE = ADJACENT - 0.05
 """Nothing is put beside another with the centres further apart [m]: near where the words end they are hardly meant."""
 
@@ -63,7 +67,7 @@ class TableThings:
     Attributes:
         location: Their centres, (N, 3) [m].
         extent: Their length, width and height, (N, 3) [m].
-        yaw: Directions of their lengths, (N,) [rad]; None where they are not known.
+        yaw: Directions of their lengths, (N,) [rad]; None where they are not known, NaN for those that are not.
     """
 
     location: FloatArray
@@ -80,24 +84,61 @@ class TableThings:
         """Height of each top, (N,) [m]."""
         return np.asarray(self.location[:, 2] + 0.5 * self.extent[:, 2])
 
+    def half_width(self, index: int, way: FloatArray) -> float:
+        """How far a thing reaches from its centre along a way (2,), seen from above [m]; all around if unknown how."""
+        yaw = np.nan if self.yaw is None else float(self.yaw[index])
+        if np.isnan(yaw):
+            return float(self.radius[index])
+        along = abs(way[0] * np.cos(yaw) + way[1] * np.sin(yaw))
+        across = abs(way[1] * np.cos(yaw) - way[0] * np.sin(yaw))
+        return float(0.5 * (along * self.extent[index, 0] + across * self.extent[index, 1]))
+
+    def room(self, index: int, place: FloatArray) -> float:
+        """Room between a thing that is put at a place, turned as it is, and the nearest other, from above [m]."""
+        others = np.arange(len(self.location)) != index
+        if not np.any(others):
+            return np.inf
+        yaw = np.nan if self.yaw is None else float(self.yaw[index])
+        if np.isnan(yaw):
+            return float(self.away(place)[others].min() - self.radius[index])
+        return float(self.away(place + self._outline(index, yaw))[:, others].min())
+
+    def _outline(self, index: int, yaw: float) -> FloatArray:
+        """Points on the outline of a thing seen from above, around its centre, (n, 2) [m]."""
+        steps = np.linspace(-1.0, 1.0, OUTLINE)
+        ends = np.ones_like(steps)
+        sides = [(steps, ends), (steps, -ends), (ends, steps), (-ends, steps)]
+        half = 0.5 * self.extent[index, :2]
+        box = np.concatenate([np.stack(side, axis=1) for side in sides]) * half
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        return np.asarray(np.stack([box[:, 0] * cos - box[:, 1] * sin, box[:, 0] * sin + box[:, 1] * cos], axis=1))
+
     def away(self, place: FloatArray) -> FloatArray:
-        """How far each is from a place (2,), seen from above, (N,) [m]; less than 0 inside."""
-        off = place[:2] - self.location[:, :2]
+        """How far each is from places (..., 2), seen from above, (..., N) [m]; less than 0 inside."""
+        off = place[..., None, :2] - self.location[:, :2]
+        around = np.linalg.norm(off, axis=-1) - self.radius
         if self.yaw is None:
-            return np.asarray(np.linalg.norm(off, axis=1) - self.radius)
+            return np.asarray(around)
         cos, sin = np.cos(self.yaw), np.sin(self.yaw)
-        along = np.stack([off[:, 0] * cos + off[:, 1] * sin, off[:, 1] * cos - off[:, 0] * sin], axis=1)
+        along = np.stack([off[..., 0] * cos + off[..., 1] * sin, off[..., 1] * cos - off[..., 0] * sin], axis=-1)
         beyond = np.abs(along) - 0.5 * self.extent[:, :2]
-        inside = np.minimum(beyond.max(axis=1), 0.0)
-        return np.asarray(np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + inside)
+        inside = np.minimum(beyond.max(axis=-1), 0.0)
+        box = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) + inside
+        return np.asarray(np.where(np.isnan(self.yaw), around, box))
 
 
 def spots_for(
-    goal: TableGoal, moved: int, things: TableThings, spaces: ConceptSpaces, resting: RestingPlaces
+    goal: TableGoal,
+    moved: int,
+    things: TableThings,
+    spaces: ConceptSpaces,
+    resting: RestingPlaces,
+    least: float = 0.0,
 ) -> list[Spot]:
     """Places that meet a goal, the best first.
 
-    A place is the better the nearer it is to what the words mean typically, and the more room it leaves.
+    A place is the better the nearer it is to what the words mean typically, and the more room it leaves. Places so near
+    to where the thing stands that nobody would see it moved are worse.
 
     Args:
         goal: What is meant.
@@ -105,6 +146,7 @@ def spots_for(
         things: All things as they are seen.
         spaces: Concepts of directions.
         resting: Where things were ever seen to rest.
+        least: How far the thing is brought at least, if that is possible [m].
     """
     found: list[tuple[float, Spot]] = []
     if goal.grounds:
@@ -113,7 +155,13 @@ def spots_for(
                 found += _by(ground, goal.concepts, moved, things, spaces)
     else:
         found += _at(goal.concepts, moved, things, resting)
-    return [spot for _, spot in sorted(found, key=lambda each: each[0])]
+    here = things.location[moved, :2]
+
+    def cost(each: tuple[float, Spot]) -> float:
+        missing = least - float(np.linalg.norm(each[1].position[:2] - here))
+        return each[0] + max(0.0, missing) / HARDLY_MOVED
+
+    return [spot for _, spot in sorted(found, key=cost)]
 
 
 def best_apart(spots: Sequence[Spot]) -> tuple[Spot, ...]:
@@ -175,7 +223,7 @@ def _at(
             place = np.array([x, y, height])
             if not concepts <= resting.at(place):
                 continue
-            room = _room(place, moved, things)
+            room = things.room(moved, place[:2])
             if room >= LEAST_ROOM:
                 off = float(np.linalg.norm(weight * ((place[:2] - resting.mean) / spread - ideal)))
                 yield off + _crowded(room), Spot(place)
@@ -193,20 +241,20 @@ def _by(
             yield 0.0, Spot(on_top, ground)
         return
     directions = _directions(concepts, spaces)
-    typical = float(things.radius[ground] + things.radius[moved]) + TYPICAL_GAP
-    farthest = min(typical - TYPICAL_GAP + WIDEST_GAP, FARTHEST_BESIDE)
-    for distance in np.linspace(0.5 * typical, farthest, DISTANCES):
-        for angle in 2.0 * np.pi * np.arange(ANGLES) / ANGLES:
-            way = np.array([np.cos(angle), np.sin(angle)])
+    for angle in 2.0 * np.pi * np.arange(ANGLES) / ANGLES:
+        way = np.array([np.cos(angle), np.sin(angle)])
+        aside = [_aside(way, each) for each in directions]
+        if any(off > FARTHEST_ASIDE * spread for off, spread in aside):
+            continue
+        touching = things.half_width(ground, way) + things.half_width(moved, way)
+        typical, farthest = touching + TYPICAL_GAP, min(touching + WIDEST_GAP, FARTHEST_BESIDE)
+        aside_most = max((off for off, _ in aside), default=0.0)
+        for distance in np.linspace(touching, farthest, DISTANCES):
             place = np.append(centre[:2] + distance * way, 0.5 * height)
             if not concepts <= relation_of(place - centre, spaces, things.extent[[moved, ground]]):
                 continue
-            aside = [_aside(way, each) for each in directions]
-            if any(off > FARTHEST_ASIDE * spread for off, spread in aside):
-                continue
-            room = _room(place, moved, things)
+            room = things.room(moved, place[:2])
             if room >= LEAST_ROOM:
-                aside_most = max((off for off, _ in aside), default=0.0)
                 yield ASIDE_COST * aside_most + abs(distance - typical) / 0.05 + _crowded(room), Spot(place)
 
 
@@ -231,14 +279,6 @@ def _aside(way: FloatArray, direction: Gaussian) -> tuple[float, float]:
     across = np.array([-mean[1], mean[0]])
     spread = float(np.sqrt(across @ direction.covariance[:2, :2] @ across))
     return float(np.arccos(np.clip(way @ mean, -1.0, 1.0))), spread
-
-
-def _room(place: FloatArray, moved: int, things: TableThings) -> float:
-    """Room between the thing at a place and the nearest other, seen from above [m]."""
-    others = np.arange(len(things.location)) != moved
-    if not np.any(others):
-        return np.inf
-    return float(things.away(place)[others].min() - things.radius[moved])
 
 
 def _crowded(room: float) -> float:

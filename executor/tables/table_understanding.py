@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from executor.actions.quantities import least_travel
 from executor.execution.answer import Answer, OnAmbiguous
 from executor.execution.understood import Option, Referent, Understood, offer, offer_again, parts, question, quoted
 from executor.lexicon import entry_of
@@ -115,7 +116,10 @@ class TableUnderstanding:
                 return found
             return self._blocked(found, covered, "it cannot be taken", (), view, reading)
         language, meant = self.knowledge.table_language, self.sound(reading)
-        wanted = spots_for(meant, thing, view.things, self.knowledge.spaces, language.resting)
+        least = (
+            0.0 if reading.action is None else least_travel(self.knowledge.spaces.actions.statistics(reading.action))
+        )
+        wanted = spots_for(meant, thing, view.things, self.knowledge.spaces, language.resting, least)
         if wanted:
             spots = best_apart(wanted)
             if covered:

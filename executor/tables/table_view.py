@@ -71,9 +71,12 @@ class TableView:
         count = len(observation.object_ids)
         assert observation.extent is not None  # a camera measures what it sees
         extent = np.median(observation.extent, axis=0) if count else np.zeros((0, 3))
-        things = TableThings(last, extent, None if observation.yaw is None else observation.yaw[-1])
         hsl, colours = _typical(observation.colour)
         held, feels = held_thing(observation), bool(felt(observation)[-1])
+        yaw = None if observation.yaw is None else np.array(observation.yaw[-1])
+        if yaw is not None and held is not None:
+            yaw[held] = np.nan  # the hand hides how it is turned
+        things = TableThings(last, extent, yaw)
         view = cls(observation, things, tuple(range(count)), held, feels, (), hsl, colours)
         if before is None:
             return view

@@ -354,7 +354,9 @@ class TableChart:
         """Events, sequences of two, and the whole command."""
         groups = (
             ("action", self._foremost(actions)),
-            ("entity", self._foremost(entities)),
+            # Where a thing is explains more words than what it is: the one kind would leave no room for the other.
+            ("entity", self._foremost([each for each in entities if not each.key])),
+            ("entity", self._foremost([each for each in entities if each.key])),
             ("it", self._foremost(references)),
             ("destination", self._foremost(destinations)),
         )

@@ -94,13 +94,17 @@ def connect(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
     """Connect neighbouring pixels that stand out, but for where depth jumps, or colour and depth change together.
 
+    Pixels without depth go by colour. A patch of them may be at an edge, where pixels of the same colour are before
+    and behind it: it is connected with those to one side of that jump only, the more numerous ones.
+
     Args:
         kinds: What each pixel shows, (h, w).
         pixels: Numbers of those that stand out, (n,).
         depth: Their depths, (n,) [m]; 0 is none.
         colours: Their red, green, blue, (n, 3) of 255.
         limits: Jump of depth, jump of depth between colours [m], change of chromaticity, how much more of it in the
-            dark, and the difference of depth within which neighbours agree [m], (5,).
+            dark, the difference of depth within which neighbours agree [m], and how much depth may change across a
+            patch without depth [m], (6,).
 
     Returns:
         The part that each belongs to, (n,); how many of its neighbours agree on depth, (n,); and whether no pixel of
@@ -114,9 +118,9 @@ def connect(
     parent = np.arange(count)
     agreeing = np.zeros(count, dtype=np.int64)
     exposed = np.ones(count, dtype=np.bool_)
+    beside_patch = 0
     for n in range(count):
         row, column = pixels[n] // width, pixels[n] % width
-        total = colours[n, 0] + colours[n, 1] + colours[n, 2] + 1.0
         for step in range(9):
             r, c = row + step // 3 - 1, column + step % 3 - 1
             if r < 0 or c < 0 or r >= height or c >= width or kinds[r, c] == 2:
@@ -125,11 +129,7 @@ def connect(
             m = index[r, c]
             if m <= n:  # each pair once
                 continue
-            other = colours[m, 0] + colours[m, 1] + colours[m, 2] + 1.0
-            hue = abs(colours[n, 0] / total - colours[m, 0] / other) + abs(
-                colours[n, 1] / total - colours[m, 1] / other
-            )
-            changed = hue > limits[2] + limits[3] / min(total, other)
+            changed = _changed(colours[n], colours[m], limits)
             if depth[n] > 0.0 and depth[m] > 0.0:
                 jump = abs(depth[n] - depth[m])
                 if jump < limits[4]:
@@ -139,27 +139,88 @@ def connect(
                     continue
             elif changed:
                 continue
-            # union, with paths halved
-            a, b = n, m
-            while parent[a] != a:
-                parent[a] = parent[parent[a]]
-                a = parent[a]
-            while parent[b] != b:
-                parent[b] = parent[parent[b]]
-                b = parent[b]
-            if a < b:
-                parent[b] = a
-            else:
-                parent[a] = b
+            elif depth[n] > 0.0 or depth[m] > 0.0:
+                beside_patch += 1
+                continue
+            _unite(parent, n, m)
+    if beside_patch > 0:
+        _connect_patches(parent, index, pixels, depth, colours, limits)
     part = np.zeros(count, dtype=np.int64)
     parts = 0
     for n in range(count):
-        root = n
-        while parent[root] != root:
-            root = parent[root]
+        root = _root(parent, n)
         if root == n:
             part[n] = parts
             parts += 1
         else:
             part[n] = part[root]
     return part, agreeing, exposed
+
+
+@compiled
+def _connect_patches(
+    parent: NDArray[np.int64],
+    index: NDArray[np.int64],
+    pixels: NDArray[np.int64],
+    depth: FloatArray,
+    colours: FloatArray,
+    limits: FloatArray,
+) -> None:
+    """Connect patches without depth with what is beside them; see `connect`."""
+    height, width = index.shape
+    count = len(pixels)
+    patch = np.zeros(count, dtype=np.int64)  # roots, before anything is connected with them
+    nearest = np.full(count, np.inf)
+    farthest = np.zeros(count)
+    votes = np.zeros(count, dtype=np.int64)
+    for n in range(count):
+        patch[n] = _root(parent, n)
+    for turn in range(3):
+        for n in range(count):
+            if depth[n] > 0.0:
+                continue
+            own = patch[n]
+            row, column = pixels[n] // width, pixels[n] % width
+            for step in range(9):
+                r, c = row + step // 3 - 1, column + step % 3 - 1
+                if r < 0 or c < 0 or r >= height or c >= width:
+                    continue
+                m = index[r, c]
+                if m < 0 or depth[m] <= 0.0 or _changed(colours[n], colours[m], limits):
+                    continue
+                parts = farthest[own] - nearest[own] > limits[5]
+                far = depth[m] > 0.5 * (nearest[own] + farthest[own])
+                if turn == 0:
+                    nearest[own] = min(nearest[own], depth[m])
+                    farthest[own] = max(farthest[own], depth[m])
+                elif turn == 1:
+                    votes[own] += 1 if far else -1
+                elif not parts or far == (votes[own] > 0):
+                    _unite(parent, n, m)
+
+
+@compiled
+def _changed(one: FloatArray, other: FloatArray, limits: FloatArray) -> bool:
+    """Whether two colours (3,) differ by more than noise and shade explain."""
+    a, b = one[0] + one[1] + one[2] + 1.0, other[0] + other[1] + other[2] + 1.0
+    hue = abs(one[0] / a - other[0] / b) + abs(one[1] / a - other[1] / b)
+    return bool(hue > limits[2] + limits[3] / min(a, b))
+
+
+@compiled
+def _root(parent: NDArray[np.int64], n: int) -> int:
+    """The pixel that stands for all that are connected with one; halves the paths to it."""
+    while parent[n] != n:
+        parent[n] = parent[parent[n]]
+        n = parent[n]
+    return n
+
+
+@compiled
+def _unite(parent: NDArray[np.int64], n: int, m: int) -> None:
+    """Connect two pixels, and all that are connected with them."""
+    a, b = _root(parent, n), _root(parent, m)
+    if a < b:
+        parent[b] = a
+    else:
+        parent[a] = b

@@ -29,7 +29,9 @@ LID_SHARE = 0.6
 """A piece that stands on another and has less than this part of its pixels is a lid or a cap of it."""
 SUPPORT = 0.010
 """A pixel's depth counts when two neighbours of the same piece agree within this [m]."""
-_LIMITS = np.array([JUMP, COLOUR_JUMP, ANOTHER_COLOUR, CHROMA_NOISE, SUPPORT])
+HOLE = 0.03
+"""Across a patch without depth, as shiny or steep places have, the depth of one thing changes by this at most [m]."""
+_LIMITS = np.array([JUMP, COLOUR_JUMP, ANOTHER_COLOUR, CHROMA_NOISE, SUPPORT, HOLE])
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ from learning.perception.observation_file import load_observation, save_observat
 from learning.perception.observe_camera import USUAL, Eyesight
 from robots.workers import end_with_parent, worker_count
 
-PERCEPTION_VERSION = 2
+PERCEPTION_VERSION = 3
 """Raised when perception would give other observations for the same demo."""
 ROUND = 4
 """Demos for each worker of a cluster that are asked for at a time: between rounds progress is told."""

@@ -13,8 +13,8 @@ SHADED = 3.0
 """Factor of brightness that light and shade explain; a white cap on a black body is more."""
 DARK = 24.0
 """Added to the sum of a pixel's channels before brightness is compared: noise of three channels."""
-WELL_LIT = 0.6
-"""Part of the pixels of the main colour that are darker than the well-lit ones."""
+WELL_LIT = 0.9
+"""Part of the pixels of the main colour that are darker than the well-lit ones: of a mug only the rim is in light."""
 BY_HEIGHT = 0.5
 """How much of a pixel's weight is that of its height where nothing is hidden: a lid seen from above has half of the
 pixels and few of the heights, and the base of a stapler the other way round."""

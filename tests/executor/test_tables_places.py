@@ -98,3 +98,39 @@ def test_where_all_is_full_there_is_no_place() -> None:
     table = things([0.6, 0.0, 0.4], *crowd)
     assert spots_for(TableGoal(frozenset({FAR}), ()), 0, table, ConceptSpaces(TABLE), resting()) == []
     assert spots_for(TableGoal(frozenset({BESIDE}), (50,)), 0, table, spaces(), resting()) == []
+
+
+def test_room_is_kept_around_the_outline_of_a_thing_as_it_lies() -> None:
+    place, extent = np.array([[0.6, 0.0, 0.02], [0.5, 0.3, 0.02]]), np.array([[0.04, 0.04, 0.04], [0.16, 0.02, 0.02]])
+    across = TableThings(place, extent, np.array([0.0, np.pi / 2]))
+    along = TableThings(place, extent, np.array([0.0, 0.0]))
+    unknown = TableThings(place, extent, np.array([0.0, np.nan]))
+    spot = np.array([0.6, 0.12])
+    assert along.room(1, spot) == pytest.approx(0.12 - 0.02 - 0.01, abs=1e-9)
+    assert across.room(1, spot) == pytest.approx(0.12 - 0.02 - 0.08, abs=1e-9)
+    assert unknown.room(1, spot) == pytest.approx(0.12 - 0.02 - 0.5 * np.hypot(0.16, 0.02), abs=1e-9)
+    for way, half in (([0.0, 1.0], 0.01), ([1.0, 0.0], 0.08)):
+        assert along.half_width(1, np.array(way)) == pytest.approx(half)
+    assert TableThings(place[:1], extent[:1]).room(0, spot) == np.inf
+
+
+def test_a_long_thing_goes_nearer_where_it_lies_along_the_other() -> None:
+    known, place = spaces(), np.array([[0.6, 0.0, 0.02], [0.45, -0.3, 0.02]])
+    extent = np.array([[0.05, 0.05, 0.04], [0.16, 0.02, 0.02]])
+    goal = TableGoal(frozenset({direction(known, [0, 1.0, 0])}), (0,))
+    away = []
+    for yaw in (0.0, np.pi / 2):
+        best = spots_for(goal, 1, TableThings(place, extent, np.array([0.0, yaw])), known, resting())[0]
+        away.append(best.position[1])
+    assert away[0] == pytest.approx(0.025 + 0.01 + 0.05, abs=0.02)  # the usual gap, on a grid
+    assert away[1] == pytest.approx(0.025 + 0.08 + 0.05, abs=0.02)
+
+
+def test_a_thing_is_brought_a_way_where_there_are_places_for_that() -> None:
+    known, table = spaces(), things([0.5, -0.15, 0.05], [0.5, 0.0, 0.05])
+    goal = TableGoal(frozenset({direction(known, [0, -1.0, 0])}), (1,))
+    here = table.location[0, :2]
+    near = spots_for(goal, 0, table, known, resting())[0].position[:2]
+    far = spots_for(goal, 0, table, known, resting(), 0.09)[0].position[:2]
+    assert np.linalg.norm(near - here) < 0.05 < 0.07 < np.linalg.norm(far - here)
+    assert spots_for(goal, 0, table, known, resting(), 9.0)  # better a little than not at all
