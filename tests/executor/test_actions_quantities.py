@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from executor.actions.quantities import FORCE, LOWEST_RISE, RISE, Quantities, quantities_of
+from executor.actions.quantities import FORCE, LOWEST_RISE, RISE, Quantities, least_travel, quantities_of
 from learning.graphs import ActionGraphlet, GraphletState, Side
 from learning.graphs.action_statistics import ActionStatistics
 from robots.pose import FloatArray
@@ -62,3 +62,16 @@ def test_what_nobody_showed_is_usual() -> None:
     low = ActionStatistics(2)
     low.update([{}, values(clearance=0.001)])
     assert quantities_of(LIFT, low).rise == LOWEST_RISE
+
+
+def test_things_are_brought_as_far_as_they_seldom_are_less() -> None:
+    statistics = ActionStatistics(3)
+    rest = values(duration=0.5)
+    for way in (0.2, 0.2, 0.3, 0.3):
+        statistics.update([rest, values(travel=0.05), values(travel=way)])
+    assert least_travel(statistics) == pytest.approx(0.25 - 1.5 * 0.05, abs=0.005)  # of the state that came last
+    wide = ActionStatistics(3)
+    for way in (0.02, 0.5):
+        wide.update([rest, rest, values(travel=way)])
+    assert least_travel(wide) == 0.0
+    assert least_travel(None) == least_travel(ActionStatistics(2)) == 0.0

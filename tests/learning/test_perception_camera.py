@@ -10,6 +10,7 @@ from learning.perception.surface_colour import hsl_of
 from robots.hand_dynamics import HandDynamics
 from tests.learning.camera_demos import demo_of, robot, still, table
 from twin import ObjectSpec, SceneSpec, World
+from twin.objects import object_model
 
 NAMES = (("small_red_can", 0.50, -0.10), ("small_blue_carton", 0.55, 0.12), ("small_green_tub", 0.44, 0.02))
 
@@ -41,6 +42,34 @@ def test_every_object_is_found_where_it_stands_with_its_colour_and_size() -> Non
     assert seen.visible is not None and seen.visible.all()
     assert set(seen.features) == {"size", "weight", "glimpsed_shape"}
     assert np.isnan(seen.features["weight"]).all()  # nothing was lifted
+
+
+@pytest.mark.parametrize("gap", [0.02, 0.05])
+def test_a_thing_before_another_is_another_thing(gap: float) -> None:
+    """At the edge of the front one colour and depth are of different things, and some depth is missing."""
+    centre = 0.50 + 0.0265 + gap + 0.033  # radii of a small and of a large can
+    spec = table(("small_red_can", 0.50, 0.0), ("large_yellow_can", centre, 0.0), ("large_blue_can", 0.50, -0.1))
+    with World(spec) as world:
+        seen = observe_camera_world(world.state(), world.spec, np.random.default_rng(0))
+    assert len(seen.object_ids) == 3
+    for thing in spec.objects:
+        away = np.linalg.norm(seen.location[-1] - thing.position, axis=1)
+        assert away.min() < 0.012  # the back of a thing is not seen, and of one behind another not all of its front
+        assert seen.extent is not None
+        assert seen.extent[-1, away.argmin(), :2] == pytest.approx(2 * np.array(thing.half_extents[:2]), abs=0.012)
+
+
+def test_a_white_mug_in_its_own_shade_is_white() -> None:
+    mug = ObjectSpec.of_model(0, "white_mug", (0.62, 0.1, object_model("white_mug").half_extents[2]))
+    tape = ObjectSpec.of_model(1, "gray_tape", (0.62, -0.15, object_model("gray_tape").half_extents[2]))
+    with World(SceneSpec(name="shade", kind="table", robot="baxter", objects=(mug, tape))) as world:
+        seen = observe_camera_world(world.state(), world.spec, np.random.default_rng(0))
+    lightness = {
+        each.model: np.median(seen.colour[:, np.linalg.norm(seen.location[-1] - each.position, axis=1).argmin(), 2])
+        for each in (mug, tape)
+    }
+    assert lightness["white_mug"] > 0.8
+    assert lightness["gray_tape"] == pytest.approx(0.5, abs=0.05)  # what is gray is not made white by that
 
 
 def test_what_lies_in_a_bowl_is_seen_by_those_who_know_of_it() -> None:
