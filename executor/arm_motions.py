@@ -82,7 +82,12 @@ class ArmMotions:
         return self.world.state().arms[self.number].wrist_wrench[:3]
 
     def around(
-        self, *, detailed: Collection[int] = (), without: Collection[int] = (), may_touch: Collection[int] = ()
+        self,
+        *,
+        detailed: Collection[int] = (),
+        without: Collection[int] = (),
+        may_touch: Collection[int] = (),
+        holding: bool = True,
     ) -> CollisionModel:
         """What the arm may hit, with the held object in its hand.
 
@@ -90,9 +95,12 @@ class ArmMotions:
             detailed: Objects to take part by part, with what they lie in; the others are wrapped in convex hulls.
             without: Objects to leave out.
             may_touch: Objects that those links of the hand may touch that are made for it.
+            holding: Whether the held object stays in the hand; else it is left out.
         """
         held: dict[str, Sequence[Obstacle]] = {}
-        if self.held is not None:
+        if self.held is not None and not holding:
+            without = {*without, self.held}
+        elif self.held is not None:
             tool = self.world.state().arms[self.number].pose_tool_in_world
             mine = [each for each in self.world.obstacles(detailed=()) if each.name == str(self.held)]
             held[self.arm_name] = [

@@ -7,6 +7,7 @@ import numpy as np
 
 from executor.arm_motions import SAMPLES, WAY_CLEARANCE, ArmMotions, moved
 from executor.holders import holders
+from robots.collision import CollisionModel
 from robots.kinematics import rotation_matrix
 from robots.pose import FloatArray
 from robots.trajectories import ToolLimits, Trajectory
@@ -121,18 +122,41 @@ def choose_grasp(
     return "no room: the hand would touch something on the way into or out of every grasp"
 
 
-def way_back(motions: ArmMotions, start: FloatArray) -> Trajectory | None:
+def way_back(
+    motions: ArmMotions, start: FloatArray, around: CollisionModel | None = None, opening: float | None = None
+) -> Trajectory | None:
     """The way of the hand straight back from a grasp at a posture (n,) [rad], or up if it must; None if there is none.
 
     A hand that came from above goes up as it goes back.
+
+    Args:
+        motions: The arm.
+        start: The posture.
+        around: What the hand may not meet on its way; None: it may meet anything.
+        opening: Gap between its fingers [m]; None: that to which they are told.
     """
     at = motions.arm.forward_kinematics(start)
     approach = rotation_matrix(at.orientation_xyzw) @ motions.arm.gripper.approach
-    for way in (-approach, np.array([0.0, 0.0, 1.0])):
-        for part in BACK:
-            leaving = motions.plan_straight(start, moved(at, part * APPROACH * way), GENTLE).trajectory
-            if leaving is not None:
-                return leaving
-        if way[2] < UPWARDS:
-            break
+    back = _straight(motions, start, -approach, around, opening)
+    if back is None and -approach[2] >= UPWARDS:
+        return way_up(motions, start, around, opening)
+    return back
+
+
+def way_up(
+    motions: ArmMotions, start: FloatArray, around: CollisionModel | None = None, opening: float | None = None
+) -> Trajectory | None:
+    """The way of the hand straight up from a posture (n,) [rad]; None if there is none. Arguments as above."""
+    return _straight(motions, start, np.array([0.0, 0.0, 1.0]), around, opening)
+
+
+def _straight(
+    motions: ArmMotions, start: FloatArray, way: FloatArray, around: CollisionModel | None, opening: float | None
+) -> Trajectory | None:
+    """A straight way from a posture along `way` (3,), as far as an arm may draw back that meets nothing."""
+    at = motions.arm.forward_kinematics(start)
+    for part in BACK:
+        leaving = motions.plan_straight(start, moved(at, part * APPROACH * way), GENTLE).trajectory
+        if leaving is not None and (around is None or motions.way_free(around, leaving, 0.0, opening)):
+            return leaving
     return None

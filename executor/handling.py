@@ -6,9 +6,10 @@ import numpy as np
 
 from executor.arm_motions import WAY_CLEARANCE, ArmMotions, moved
 from executor.follow import wait
-from executor.grasp_choice import GENTLE, Accepts, ChosenGrasp, choose_grasp, way_back
+from executor.grasp_choice import GENTLE, Accepts, ChosenGrasp, choose_grasp, way_back, way_up
 from executor.handled import Handled
 from robots.arm_model import ArmModel
+from robots.collision import CollisionModel
 from robots.kinematics import quaternion_xyzw, rotation_matrix
 from robots.pose import FloatArray, Pose
 from robots.trajectories import JointLimits, ToolLimits, Trajectory
@@ -59,6 +60,7 @@ class Handling:
         self.arm_name = arm
         self.motions = ArmMotions(world, arm, rng)
         self._gap = 0.0
+        self._let_go: int | None = None
         self._slip: SlipMonitor | None = None
 
     @property
@@ -165,17 +167,17 @@ class Handling:
         """
         motions = self.motions
         target = self._carried_to(offset, turn)
-        model = motions.around()
+        model, emptied = motions.around(), motions.around(holding=False)
         straight = motions.plan_straight(self.q, target, CARRYING).trajectory
         if straight is not None and motions.way_free(model, straight, WAY_CLEARANCE):
-            rest = self._setting_down(straight.at(straight.duration)[0], drop)
+            rest = self._setting_down(straight.at(straight.duration)[0], drop, emptied)
             if rest is not None:
                 return CarryPlan(straight, *rest)
         for start in (self.q,) if near is None else (near, self.q):
             goal = motions.reach(target, start)
             if goal is None or not motions.free(model, goal, WAY_CLEARANCE):
                 continue
-            rest = self._setting_down(goal, drop)
+            rest = self._setting_down(goal, drop, emptied)
             if rest is None:
                 continue
             planned = motions.plan_free(model, goal, self.limits.scaled(1.5))
@@ -214,11 +216,23 @@ class Handling:
         """Open the fingers as far as they came around the object."""
         self.motions.fingers.move(self._gap)
         self._gap = 0.0
+        self._let_go = self.motions.held
         self.motions.held = self._slip = None
 
     def leave(self, way: Trajectory | None = None) -> Handled:
-        """Draw the hand straight back from where it let go, on a way planned before or a new one."""
-        leaving = way or way_back(self.motions, self.q)
+        """Draw the hand straight back from where it let go, on a way planned before or a new one.
+
+        Where it would hit something on every straight way back it goes up; it goes blindly only at the last.
+        """
+        leaving = way
+        if leaving is None:
+            left = () if self._let_go is None else (self._let_go,)
+            around = self.motions.around(without=left)
+            leaving = (
+                way_back(self.motions, self.q, around)
+                or way_up(self.motions, self.q, around)
+                or way_back(self.motions, self.q)
+            )
         if leaving is None:
             return Handled(False, "no straight way: the hand cannot draw back from where the object touched down")
         self.motions.play(leaving)
@@ -242,7 +256,9 @@ class Handling:
             return Handled(False, f"dropped: the object left the hand while {doing}", slip)
         return replace(done, slip=slip)
 
-    def _setting_down(self, start: FloatArray, drop: float) -> tuple[Trajectory, Trajectory, Trajectory] | None:
+    def _setting_down(
+        self, start: FloatArray, drop: float, around: CollisionModel
+    ) -> tuple[Trajectory, Trajectory, Trajectory] | None:
         """The ways straight down from a posture, fast and slowly, and that back from the object; None without them."""
         above = self.arm.forward_kinematics(start)
         slow = min(SETTLING, drop)
@@ -254,7 +270,8 @@ class Handling:
         settling = self.motions.plan_straight(near, at, SLOW).trajectory
         if settling is None:
             return None
-        leaving = way_back(self.motions, settling.at(settling.duration)[0])
+        opening = self._gap or self.arm.gripper.max_opening
+        leaving = way_back(self.motions, settling.at(settling.duration)[0], around, opening)
         return None if leaving is None else (lowering, settling, leaving)
 
     def _carried_to(self, offset: FloatArray, turn: float) -> Pose:

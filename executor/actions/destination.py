@@ -53,7 +53,7 @@ class Destination:
             at = down.at(down.duration)[0]
             if not motions.free(self._around, at, TABLE_CLEARANCE, grip.opening):
                 continue
-            if way_back(motions, at) is not None:
+            if way_back(motions, at, self._around, grip.opening) is not None:
                 self.turn, self.above = turn, above
                 return True
         return False

@@ -23,7 +23,7 @@ from executor.actions.primitives import (
 )
 from executor.actions.reaching import reaches
 from executor.actions.step_aside import step_aside
-from executor.actions.things import clear_below, pose_of
+from executor.actions.things import clear_below, is_crowded, pose_of
 from executor.actions.touching_hand import TouchingHand
 from executor.arm_motions import ArmMotions
 from executor.follow import wait
@@ -101,8 +101,10 @@ class ActingHand:
             return Handled(True)
         first = next((step for step in (*plan.before, *plan.steps) if isinstance(step, Reach | Touch)), None)
         if isinstance(first, Touch):
-            near = reaches(self._world, self.name, self._object)
-            return Handled(near, "" if near else "out of reach: no posture brings the hand to the object")
+            if not reaches(self._world, self.name, self._object):
+                return Handled(False, "out of reach: no posture brings the hand to the object")
+            # Where nothing is in the way there is a way; to look for it first would only make everyone wait.
+            return self._outside.foresee(first, self._rng) if is_crowded(self._world, self._object) else Handled(True)
         if first is None:
             return Handled(True)
         if self._goal is not None and not reaches(self._world, self.name, self._object, self._goal):

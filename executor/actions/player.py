@@ -12,7 +12,7 @@ from executor.actions.primitives import Close, Lift, Lower, Primitive, Reach, Re
 from executor.actions.quantities import Quantities
 from executor.actions.reaching import reaches
 from executor.actions.rolling import roll_nearer
-from executor.actions.things import pose_of
+from executor.actions.things import is_crowded, pose_of
 from executor.arm_motions import ArmMotions
 from executor.handled import Handled
 from learning.graphs.action_graphlet import ActionGraphlet
@@ -130,7 +130,9 @@ class ActionPlayer:
                     hand.make_way()
                 if again or not self._way_made():
                     break
-            if stays or not roll_nearer(self.world, middle, attempt, self._rng, suits):
+            # Where other things leave no room, they are what is in the way, and to stand nearer is no cure.
+            blocked = is_crowded(self.world, object_id) and any(each.reason.startswith("no room") for each in failed)
+            if stays or blocked or not roll_nearer(self.world, middle, attempt, self._rng, suits):
                 break
         # An arm that reached the object and had no room tells more than one that is far away.
         return min(failed, key=lambda each: each.reason.startswith("out of reach"))

@@ -8,6 +8,7 @@ import numpy as np
 from learning.graphs.action_graphlet import ActionGraphlet
 from learning.graphs.action_statistics import ActionStatistics
 from learning.graphs.graphlet_state import Side
+from robots.pose import FloatArray
 
 RISE = 0.10
 """Height [m] by which an object is lifted where no demo tells."""
@@ -54,7 +55,7 @@ def quantities_of(graphlet: ActionGraphlet, statistics: ActionStatistics | None)
     """The means of what the demos of an action showed; usual amounts for what none did.
 
     Args:
-        graphlet: The action.
+        graphlet: The action; it may go on where the one that was measured ends.
         statistics: Gaussians of its states; None where nothing was measured (the board).
     """
     if statistics is None:
@@ -105,13 +106,18 @@ def _forces(graphlet: ActionGraphlet, statistics: ActionStatistics) -> dict[Side
     """Force of a touch from each side, beyond what the wrist carries in the state before."""
     forces: dict[Side, float] = {}
     for number, state in enumerate(graphlet.states):
-        felt, before = statistics.mean(number, "force"), statistics.mean(number - 1, "force") if number else None
+        felt, before = _vector(statistics, number, "force"), _vector(statistics, number - 1, "force")
         if state.side is not None and state.side not in forces and felt is not None and before is not None:
             forces[state.side] = max(float(np.linalg.norm(felt - before)), LEAST_FORCE)
     return forces
 
 
+def _vector(statistics: ActionStatistics, state: int, name: str) -> FloatArray | None:
+    """Mean of a measure in a state; None where none was measured."""
+    return statistics.mean(state, name) if 0 <= state < len(statistics.states) else None
+
+
 def _mean(statistics: ActionStatistics, state: int, name: str) -> float | None:
     """Mean of a measure that is one number."""
-    mean = statistics.mean(state, name)
+    mean = _vector(statistics, state, name)
     return None if mean is None else float(mean[0])

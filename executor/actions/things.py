@@ -6,10 +6,21 @@ from robots.kinematics import rotation_matrix
 from robots.pose import FloatArray, Pose
 from twin import World, WorldState
 
+CROWDED = 0.3
+"""What is so near to an object may be in the way of a hand that comes from its side [m]."""
+
 
 def pose_of(state: WorldState, object_id: int) -> Pose:
     """Pose of an object that the scene has, in the world."""
     return next(each.pose_object_in_world for each in state.objects if each.id == object_id)
+
+
+def is_crowded(world: World, object_id: int) -> bool:
+    """Whether anything stands so near to an object that a hand may not come beside it."""
+    state = world.state()
+    here = pose_of(state, object_id).position
+    away = [float(np.linalg.norm(each.pose_object_in_world.position - here)) for each in state.objects]
+    return sum(distance < CROWDED for distance in away) > 1
 
 
 def corners_of(world: World, object_id: int, pose: Pose | None = None) -> FloatArray:

@@ -32,6 +32,7 @@ class TouchingHand:
     def __init__(self, motions: ArmMotions, object_id: int) -> None:
         self._motions = motions
         self._object = object_id
+        self._foreseen: Approach | None = None
         self._approach: Approach | None = None
         self._leaning: ForceTouch | None = None
 
@@ -40,6 +41,22 @@ class TouchingHand:
         """Whether the hand has come to the object to touch it."""
         return self._approach is not None
 
+    def foresee(self, touch: Touch, rng: np.random.Generator) -> Handled:
+        """Whether there is a way to touch the object with closed fingers; nothing moves, and what was found is kept.
+
+        Raises:
+            TwinError: There is no such object.
+        """
+        fingers = self._motions.fingers
+        before = fingers.opening
+        fingers.tell(0.0)
+        found = self._found(touch, rng)
+        fingers.tell(before)
+        if isinstance(found, str):
+            return Handled(False, found)
+        self._foreseen = found
+        return Handled(True)
+
     def touch(self, touch: Touch, rng: np.random.Generator) -> Handled:
         """Come to the object and lean on it; one that will be pushed on is only come near to.
 
@@ -47,10 +64,8 @@ class TouchingHand:
             TwinError: There is no such object.
         """
         motions = self._motions
-        if touch.side is Side.ABOVE:
-            found = press_approach(motions, self._object)
-        else:
-            found = push_approach(motions, self._object, touch.onwards, rng)
+        found = self._foreseen or self._found(touch, rng)
+        self._foreseen = None
         if isinstance(found, str):
             return Handled(False, found)
         came = come_near(motions, found, self._object)
@@ -66,6 +81,12 @@ class TouchingHand:
         if not self._leaning.come(FELT_WITHIN):
             return Handled(False, f"not felt: the wrist felt {self._leaning.felt:.1f} N where the object should be")
         return Handled(True)
+
+    def _found(self, touch: Touch, rng: np.random.Generator) -> Approach | str:
+        """A way to touch the object; or why there is none."""
+        if touch.side is Side.ABOVE:
+            return press_approach(self._motions, self._object)
+        return push_approach(self._motions, self._object, touch.onwards, rng)
 
     def push(self, way: float) -> Handled:
         """Push the object on by a way [m], measured from where the wrist first feels it."""

@@ -103,8 +103,9 @@ def connect(
         depth: Their depths, (n,) [m]; 0 is none.
         colours: Their red, green, blue, (n, 3) of 255.
         limits: Jump of depth, jump of depth between colours [m], change of chromaticity, how much more of it in the
-            dark, the difference of depth within which neighbours agree [m], and how much depth may change across a
-            patch without depth [m], (6,).
+            dark, the difference of depth within which neighbours agree [m], how much depth may change across a patch
+            without depth [m], ratio of brightness that light and shade do not explain, and the sum of channels that
+            noise in the dark makes, (8,).
 
     Returns:
         The part that each belongs to, (n,); how many of its neighbours agree on depth, (n,); and whether no pixel of
@@ -204,7 +205,8 @@ def _changed(one: FloatArray, other: FloatArray, limits: FloatArray) -> bool:
     """Whether two colours (3,) differ by more than noise and shade explain."""
     a, b = one[0] + one[1] + one[2] + 1.0, other[0] + other[1] + other[2] + 1.0
     hue = abs(one[0] / a - other[0] / b) + abs(one[1] / a - other[1] / b)
-    return bool(hue > limits[2] + limits[3] / min(a, b))
+    # In the dark hue tells nothing, and black beside a colour is told by brightness.
+    return bool(hue > limits[2] + limits[3] / min(a, b) or max(a, b) + limits[7] > limits[6] * (min(a, b) + limits[7]))
 
 
 @compiled

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from learning.perception.pixel_kernel import FOUND, connect
 from learning.perception.robot_eye import Look
-from learning.perception.surface_colour import surface_colour
+from learning.perception.surface_colour import DARK, SHADED, surface_colour
 from learning.perception.table import TableView
 from robots.pose import FloatArray
 
@@ -31,7 +31,7 @@ SUPPORT = 0.010
 """A pixel's depth counts when two neighbours of the same piece agree within this [m]."""
 HOLE = 0.03
 """Across a patch without depth, as shiny or steep places have, the depth of one thing changes by this at most [m]."""
-_LIMITS = np.array([JUMP, COLOUR_JUMP, ANOTHER_COLOUR, CHROMA_NOISE, SUPPORT, HOLE])
+_LIMITS = np.array([JUMP, COLOUR_JUMP, ANOTHER_COLOUR, CHROMA_NOISE, SUPPORT, HOLE, SHADED, DARK])
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,9 +162,10 @@ def _one_thing(
         return False
     total = seen.colours.sum(axis=1)
     chroma = [np.median(_chroma(seen.colours[each]), axis=0) for each in (large, small)]
-    dark = min(float(np.median(total[large])), float(np.median(total[small]))) + 1.0
-    another = ANOTHER_COLOUR + CHROMA_NOISE / dark
-    if np.abs(chroma[0] - chroma[1]).sum() < another:
+    dark, bright = sorted(float(np.median(total[each])) for each in (large, small))
+    another = ANOTHER_COLOUR + CHROMA_NOISE / (dark + 1.0)
+    shaded = bright + DARK <= SHADED * (dark + DARK)
+    if shaded and np.abs(chroma[0] - chroma[1]).sum() < another:
         return True
     if apart is not None and np.any(np.abs(_chroma(apart) - chroma[1]).sum(axis=1) < another):
         return False

@@ -8,21 +8,24 @@ import pytest
 
 from executor.actions.obstruction import around_grasps
 from executor.actions.things import pose_of
+from executor.errors import RefusalError
 from executor.execution.answer import Answer
 from executor.report import ExecutionReport
-from executor.tables.clearing import covering, in_the_way, places_aside
+from executor.tables.clearing import carrying_action, covering, in_the_way, places_aside
 from executor.tables.places import TableThings
 from executor.tables.table_doer import TableDoer
 from executor.tables.table_understanding import TableUnderstood
 from learning import Knowledge
+from learning.graphs import ActionGraphlet
 from learning.grounding.table_scene import OVER, SIDE_PLACES
 from learning.interpretation.interpretation import Goal
 from learning.interpretation.table_interpreter import TableGoal, TableReading
-from tests.executor.graphlets import MOVE, PICK_UP
+from tests.executor.graphlets import APART, GRIP, MOVE, PICK_UP, TOUCH
 from twin import ObjectSpec, SceneSpec, World
 from twin.objects import object_model
 
 FAR, _, LEFT, _ = SIDE_PLACES
+TAKE, LET_GO = ActionGraphlet((APART, TOUCH, GRIP)), ActionGraphlet((GRIP, TOUCH, APART))
 CUBE, BOWL, LOW = [0.035, 0.035, 0.034], [0.1, 0.09, 0.046], [0.035, 0.034, 0.022]
 """Length, width and height of things as they are seen [m]."""
 
@@ -35,6 +38,17 @@ def known() -> Knowledge:
     for x in (0.53, 0.77):
         for y in (-0.25, 0.0, 0.25):
             knowledge.table_language.resting.add(np.array([x, y, 0.02]))
+    return knowledge
+
+
+def at_a_counter() -> Knowledge:
+    """The same where nothing was ever shown that brings a thing elsewhere: one is taken, and let go of."""
+    knowledge = Knowledge("table")
+    for graphlet in (TAKE, LET_GO):
+        knowledge.spaces.actions.match_or_add(graphlet)
+    for x in (0.45, 0.60):
+        for y in (-0.15, 0.0, 0.15):
+            knowledge.table_language.resting.add(np.array([x, y, 0.05]))
     return knowledge
 
 
@@ -86,26 +100,30 @@ def test_what_is_put_aside_is_out_of_the_way_of_what_comes_there() -> None:
 
 
 @contextmanager
-def doing(*models: tuple[str, float, float, float], clear: bool) -> Iterator[tuple[World, TableDoer, Knowledge]]:
-    """A Baxter at a table with things that stand at x and y [m], in such a height."""
-    knowledge = known()
+def doing(
+    *models: tuple[str, float, float, float], clear: bool, robot: str = "baxter"
+) -> Iterator[tuple[World, TableDoer, Knowledge]]:
+    """A robot at a table with things that stand at x and y [m], in such a height."""
+    knowledge = known() if robot == "baxter" else at_a_counter()
     objects = tuple(
         ObjectSpec.of_model(number, name, (x, y, float(object_model(name).half_extents[2]) + above))
         for number, (name, x, y, above) in enumerate(models)
     )
-    with World(SceneSpec(name="crowd", kind="table", robot="baxter", objects=objects)) as world:
+    with World(SceneSpec(name="crowd", kind="table", robot=robot, objects=objects)) as world:
         doer = TableDoer(world, knowledge, np.random.default_rng(0), clear=clear)
         yield world, doer, knowledge
         doer.close()
 
 
-def taken(world: World, doer: TableDoer, knowledge: Knowledge, thing: int) -> ExecutionReport:
+def taken(
+    world: World, doer: TableDoer, knowledge: Knowledge, thing: int, action: ActionGraphlet = PICK_UP
+) -> ExecutionReport:
     """Pick up a thing, as if a sentence had said so."""
     view = doer.look()
     where = pose_of(world.state(), thing).position
     index = int(np.argmin(np.linalg.norm(view.things.location - where, axis=1)))
-    reading = TableReading(("take",), None, knowledge.spaces.actions.match_or_add(PICK_UP), (index,), None, (), "")
-    goals = (Goal(view.numbers[index], None, PICK_UP),)
+    reading = TableReading(("take",), None, knowledge.spaces.actions.match_or_add(action), (index,), None, (), "")
+    goals = (Goal(view.numbers[index], None, action),)
     return doer.carry_out(TableUnderstood(("take",), None, "", goals=goals, reading=reading), view, "take")
 
 
@@ -138,3 +156,39 @@ def test_what_keeps_the_hand_from_a_thing_is_put_aside_and_the_thing_taken() -> 
     assert report.answer is Answer.DONE, report.explanation
     assert 0 in [arm.held for arm in after.arms]
     assert len(report.cleared) == len(moved) - 1 > 0
+
+
+AMONG = (
+    ("small_red_can", 0.52, 0.0, 0.0),
+    ("large_yellow_can", 0.52, 0.0795, 0.0),
+    ("large_blue_can", 0.52, -0.0795, 0.0),
+    ("large_black_can", 0.4405, 0.0, 0.0),
+)
+"""A can among three larger ones, 2 cm apart: the Mico's hand does not come around it."""
+
+
+def test_the_base_stays_where_other_things_are_in_the_way() -> None:
+    with doing(*AMONG, clear=False, robot="mico_segway") as (world, doer, knowledge):
+        report = taken(world, doer, knowledge, 0, TAKE)
+        assert world.time == 0.0
+    assert report.answer is Answer.IMPOSSIBLE
+    assert "no room" in report.reason and "in the way" in report.reason
+
+
+def test_what_takes_and_what_lets_go_make_up_an_action_that_puts_aside() -> None:
+    number, action = carrying_action(at_a_counter())
+    assert action == MOVE
+    assert at_a_counter().spaces.actions[number] == TAKE
+    with doing(*AMONG, clear=True, robot="mico_segway") as (world, doer, knowledge):
+        report = taken(world, doer, knowledge, 0, TAKE)
+        after = world.state()
+    assert report.answer is Answer.DONE, report.explanation
+    assert [arm.held for arm in after.arms] == [0]
+    assert report.cleared
+
+
+def test_without_an_action_that_lets_go_nothing_is_put_aside() -> None:
+    knowledge = Knowledge("table")
+    knowledge.spaces.actions.match_or_add(TAKE)
+    with pytest.raises(RefusalError, match="puts a thing somewhere else"):
+        carrying_action(knowledge)
