@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from executor.actions.carrying import carrying_action
 from executor.errors import RefusalError
 from executor.execution.answer import Answer, OnAmbiguous
 from executor.execution.board_understanding import BoardUnderstanding, BoardView
-from executor.execution.clearing import carrying_action, put_aside
+from executor.execution.clearing import put_aside
 from executor.execution.doer import Doer
 from executor.execution.marking import Deed, unlearn
 from executor.execution.understood import Understood
@@ -157,7 +158,7 @@ class BoardDoer:
     def _clear(self, report: ExecutionReport, understood: Understood, sight: Sight) -> tuple[ExecutionReport, bool]:
         """Put aside what is in the way, one block after the other."""
         try:
-            action = carrying_action(self.knowledge)
+            _, action = carrying_action(self.knowledge)
         except RefusalError as refusal:
             return told(report, Answer.IMPOSSIBLE, str(refusal)), False
         done: list[int] = []

@@ -10,27 +10,7 @@ from learning.interpretation import Goal
 from twin.board import nearest_cell
 
 if TYPE_CHECKING:
-    from learning import Knowledge
     from learning.graphs import ActionGraphlet
-
-
-def carrying_action(knowledge: "Knowledge") -> "ActionGraphlet":
-    """The learned action that takes a block and puts it down somewhere else.
-
-    Raises:
-        RefusalError: None was learned, nor two that make one together.
-    """
-    table = knowledge.action_table()
-    graphlets = dict(knowledge.spaces.actions.numbered)
-    whole = [number for number in graphlets if not table.starts_held[number] and not table.ends_held[number]]
-    for number in whole:
-        if any(state.holds for state in graphlets[number].states):
-            return graphlets[number]
-    takes = [number for number in graphlets if not table.starts_held[number] and table.ends_held[number]]
-    drops = [number for number in graphlets if table.starts_held[number] and not table.ends_held[number]]
-    if takes and drops:
-        return graphlets[takes[0]].followed_by(graphlets[drops[0]])
-    raise RefusalError("no action was learned that puts a block somewhere else")
 
 
 def put_aside(number: int, understood: Understood, sight: Sight, action: "ActionGraphlet") -> Goal:

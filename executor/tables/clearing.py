@@ -6,9 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from executor.errors import RefusalError
 from executor.tables.places import Spot, TableThings, lies_over, spots_for
-from learning.graphs import ActionGraphlet
 from learning.interpretation.table_interpreter import TableGoal
 
 if TYPE_CHECKING:
@@ -97,30 +95,3 @@ def places_aside(
         return float(np.linalg.norm(spot.position[:2] - here)) + CROWDED * max(0.0, AMPLE - room)
 
     return sorted(found, key=cost)
-
-
-def carrying_action(knowledge: "Knowledge") -> "tuple[int, ActionGraphlet]":
-    """The learned action that takes a thing and puts it down somewhere else, with its number.
-
-    Where there is none, what takes a thing and what lets go of one make it up: their number is that of the taking.
-
-    Raises:
-        RefusalError: No such actions were learned.
-    """
-    taking: list[tuple[int, ActionGraphlet]] = []
-    letting_go: list[ActionGraphlet] = []
-    for number, graphlet in knowledge.spaces.actions.numbered.items():
-        first, last = graphlet.states[0], graphlet.states[-1]
-        carried = any(state.holds for state in graphlet.states) and first.object_location != last.object_location
-        if not first.holds and not last.holds and carried:
-            return number, graphlet
-        if not first.holds and last.holds and not last.raised:
-            taking.append((number, graphlet))
-        if first.holds and not first.raised and not last.holds and first.object_location == last.object_location:
-            letting_go.append(graphlet)
-    if not taking or not letting_go:
-        raise RefusalError("no action was learned that puts a thing somewhere else")
-    number, take = min(taking, key=lambda each: len(each[1].states))
-    release = min(letting_go, key=lambda each: len(each.states))
-    elsewhere = 1 + max(state.object_location for state in take.states)
-    return number, ActionGraphlet.of((*take.states, *(state.at(elsewhere) for state in release.states)))

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from executor.actions.carrying import carrying_action
 from executor.errors import RefusalError
 from executor.execution.answer import Answer
 from executor.report import Outcome, joined
-from executor.tables.clearing import carrying_action, covering, places_aside
+from executor.tables.clearing import covering, places_aside
 from executor.tables.places import Spot, best_apart
 from learning.interpretation.interpretation import Goal
 

@@ -8,10 +8,9 @@ import pytest
 
 from executor.actions.obstruction import around_grasps
 from executor.actions.things import pose_of
-from executor.errors import RefusalError
 from executor.execution.answer import Answer
 from executor.report import ExecutionReport
-from executor.tables.clearing import carrying_action, covering, in_the_way, places_aside
+from executor.tables.clearing import covering, in_the_way, places_aside
 from executor.tables.places import TableThings
 from executor.tables.table_doer import TableDoer
 from executor.tables.table_understanding import TableUnderstood
@@ -176,19 +175,9 @@ def test_the_base_stays_where_other_things_are_in_the_way() -> None:
 
 
 def test_what_takes_and_what_lets_go_make_up_an_action_that_puts_aside() -> None:
-    number, action = carrying_action(at_a_counter())
-    assert action == MOVE
-    assert at_a_counter().spaces.actions[number] == TAKE
     with doing(*AMONG, clear=True, robot="mico_segway") as (world, doer, knowledge):
         report = taken(world, doer, knowledge, 0, TAKE)
         after = world.state()
     assert report.answer is Answer.DONE, report.explanation
     assert [arm.held for arm in after.arms] == [0]
     assert report.cleared
-
-
-def test_without_an_action_that_lets_go_nothing_is_put_aside() -> None:
-    knowledge = Knowledge("table")
-    knowledge.spaces.actions.match_or_add(TAKE)
-    with pytest.raises(RefusalError, match="puts a thing somewhere else"):
-        carrying_action(knowledge)
