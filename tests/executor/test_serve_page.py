@@ -7,8 +7,9 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -55,10 +56,49 @@ class Visit:
             assert asyncio.get_running_loop().time() < deadline, f"did not happen: {self.status}"
             await asyncio.sleep(0.02)
 
+    def moved(self, axis: int, sign: int) -> Callable[[], bool]:
+        """Whether the tool has moved one way from where it is now."""
+        start = self.tool
+        return lambda: bool(sign * (self.tool - start)[axis] > MOVED)
+
     async def moves(self, axis: int, sign: int) -> None:
         """Wait until the tool has moved one way from where it is."""
-        start = self.tool
-        await self.until(lambda: sign * (self.tool - start)[axis] > MOVED)
+        await self.until(self.moved(axis, sign))
+
+    async def key(self, letter: str, test: Callable[[], bool], *, lets_go: bool = True) -> None:
+        """Hold a key until something is so, and let go of it then."""
+        code = f"Key{letter.upper()}"
+        press, release = (partial(self.tab.key, kind, letter, code) for kind in ("keyDown", "keyUp"))
+        await self._hold(press, release, test, lets_go)
+
+    async def stick(self, axes: list[float], test: Callable[[], bool]) -> None:
+        """Hold a stick until something is so."""
+        press, release = (partial(self.tab.value, f"void (window.stick = {each})") for each in (axes, [0] * len(axes)))
+        await self._hold(press, release, test)
+
+    async def _hold(
+        self,
+        press: Callable[[], Awaitable[Any]],
+        release: Callable[[], Awaitable[Any]],
+        test: Callable[[], bool],
+        lets_go: bool = True,
+    ) -> None:
+        """Press until something is so, and let go.
+
+        A page that was silent for a moment, as on a busy machine, has to be let go of before it drives on.
+        """
+        deadline = asyncio.get_running_loop().time() + 30.0
+        await press()
+        while not test():
+            assert asyncio.get_running_loop().time() < deadline, f"did not happen: {self.status}"
+            if self.status["reason"].startswith("let go of the sticks"):
+                await release()
+                await self.ready()
+                await press()
+            await asyncio.sleep(0.02)
+        if lets_go:
+            await release()
+            await self.rests()
 
     async def rests(self) -> None:
         await self.until(lambda: not self.status["moving"])
@@ -84,25 +124,14 @@ def test_a_browser_drives_records_describes_and_replays(scene: str, tmp_path: Pa
         async with visit(scene, tmp_path) as page:
             tab = page.tab
             await page.ready()
-            await tab.value("void (window.stick = [0.6, 0, 0, 0])")  # right is -y
-            await page.moves(1, -1)
-            await tab.value("void (window.stick = [0, 0, 0, 0])")
-            await page.rests()
-            await tab.key("keyDown", "e", "KeyE")
-            await page.moves(2, 1)
-            await tab.key("keyUp", "e", "KeyE")
-            await page.rests()
+            await page.stick([0.6, 0, 0, 0], page.moved(1, -1))  # right is -y
+            await page.key("e", page.moved(2, 1))
 
             await tab.click("#record")
             await page.in_mode("recording")
             await page.ready()
-            await tab.key("keyDown", "d", "KeyD")
-            await page.moves(1, -1)
-            await tab.key("keyUp", "d", "KeyD")
-            await tab.key("keyDown", "c", "KeyC")
-            await page.until(lambda: page.status["tools"][page.arm]["opening"] < 0.03)
-            await tab.key("keyUp", "c", "KeyC")
-            await page.rests()
+            await page.key("d", page.moved(1, -1))
+            await page.key("c", lambda: page.status["tools"][page.arm]["opening"] < 0.03)
             await tab.click("#sentence")
             await tab.type("reach to the right and close")
             await tab.click("#describe")
@@ -135,8 +164,7 @@ def test_a_page_that_freezes_or_is_closed_stops_the_robot(tmp_path: Path) -> Non
         async with visit("board", tmp_path) as page:
             tab = page.tab
             await page.ready()
-            await tab.key("keyDown", "d", "KeyD")
-            await page.moves(1, -1)
+            await page.key("d", page.moved(1, -1), lets_go=False)
             await tab.send("Debugger.enable")
             await tab.send("Debugger.pause")
             await page.until(lambda: page.status["reason"] == "the page is silent")
@@ -147,8 +175,7 @@ def test_a_page_that_freezes_or_is_closed_stops_the_robot(tmp_path: Path) -> Non
             await tab.key("keyUp", "d", "KeyD")
             await page.ready()
 
-            await tab.key("keyDown", "d", "KeyD")
-            await page.moves(1, -1)
+            await page.key("d", page.moved(1, -1), lets_go=False)
             await tab.key("keyDown", "Escape", "Escape")  # the emergency stop, from the keyboard
             await page.until(lambda: page.status["stopped"])
             await page.rests()
@@ -305,10 +332,7 @@ def test_axes_of_the_camera_are_those_of_the_picture_on_the_page(tmp_path: Path)
                 )
                 await asyncio.sleep(1.5)  # the view flies there
                 await page.ready()
-                await tab.value("void (window.stick = [0.6, 0, 0, 0])")
-                await page.moves(1, left_of_the_robot)
-                await tab.value("void (window.stick = [0, 0, 0, 0])")
-                await page.rests()
+                await page.stick([0.6, 0, 0, 0], page.moved(1, left_of_the_robot))
             await tab.click("#stop-deck")
             await page.in_mode("review")
             await tab.click("#keep")
