@@ -32,6 +32,8 @@ PATIENCE = 6.0
 """Time that a busy machine may take for a second of the robot's [s]."""
 GRIPPING, SETTLING = 0.9, 0.3
 """Simulated time that the fingers need, and that they are left alone then [s]."""
+TRIES = 4
+"""How often a button is pressed on a busy machine."""
 NEAR = 0.004
 """Near enough to a place [m]."""
 
@@ -123,10 +125,14 @@ class Driver:
 
     async def grip(self, closed: bool) -> None:
         button = "a" if closed else "b"
-        await self._press(button, 1.0)
-        await self._simulated(GRIPPING)
-        await self._press(button, 0.0)
-        await self._simulated(SETTLING)
+        for _ in range(TRIES):
+            await self._press(button, 1.0)
+            await self._simulated(GRIPPING)
+            stopped = self.page.status["state"] == "stopped"  # a busy machine: what was pressed then counts for nothing
+            await self._press(button, 0.0)
+            await self._simulated(SETTLING)
+            if not stopped:
+                break
 
     async def _simulated(self, seconds: float) -> None:
         """Wait for the robot's own time, which falls behind on a busy machine."""
