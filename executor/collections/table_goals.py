@@ -83,16 +83,26 @@ def goals(world: World, target: int, rng: np.random.Generator) -> Iterator[Goal]
             yield goal
 
 
-def put_rule(world: World, action: TableAction, target: int, goal: Goal | None) -> Rule:
-    """When a demo of picking up, putting down or moving a thing shows what it shall; picking up has no goal."""
+def put_rule(world: World, action: TableAction, target: int, goal: Goal | None, *, only_beside: bool = False) -> Rule:
+    """When a demo of picking up, putting down or moving a thing shows what it shall; picking up has no goal.
+
+    Args:
+        world: The world as it is before.
+        action: What is done.
+        target: Id of the thing.
+        goal: Where it goes.
+        only_beside: Whether on any side of the reference is as good, as where a sentence says no more than that.
+    """
     if goal is None:
         return picked_up
     rolls = world.model_of(target).shape in ROLLING
-    return lambda facts: set_down(facts, brought=action == "move", may_roll=rolls) or reached(facts, goal, world)
+    return lambda facts: (
+        set_down(facts, brought=action == "move", may_roll=rolls) or reached(facts, goal, world, only_beside)
+    )
 
 
-def reached(facts: Facts, goal: Goal, world: World) -> str:
-    """Say what is wrong with where a thing ended; empty when it is where it shall be."""
+def reached(facts: Facts, goal: Goal, world: World, only_beside: bool = False) -> str:
+    """Say what is wrong with where a thing ended; empty when it is where it shall be. Arguments as for `put_rule`."""
     destination, end = goal.destination, facts.positions[-1]
     if destination.relation is None or destination.reference is None:
         if facts.heights[-1] > 0.008:
@@ -110,7 +120,7 @@ def reached(facts: Facts, goal: Goal, world: World) -> str:
     way = np.array(WAYS[destination.relation])
     distance = float(np.linalg.norm(off[:2]))
     aside = np.arccos(np.clip(off[:2] @ way / max(distance, 1e-6), -1.0, 1.0))
-    if facts.heights[-1] > 0.008 or distance > FARTHEST_BESIDE or aside > ASIDE:
+    if facts.heights[-1] > 0.008 or distance > FARTHEST_BESIDE or (aside > ASIDE and not only_beside):
         return "not beside it as meant"
     return ""
 

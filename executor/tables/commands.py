@@ -81,10 +81,11 @@ def tabletop_command(rng: np.random.Generator, language: str, known: Heard) -> T
             if plan is None:
                 continue
             facts = leeds.facts_of(scene, action, target, plan.goal)
-            sentence = _new([each for each in tell_table(facts, SPEAKERS, language, rng)], known)
-            rule = put_rule(world, action, target, plan.goal)
-        if sentence is not None:
-            return TableCommand(scene, sentence, action, target, thing, by_rule(rule, plan.demo))
+            told = _new(tell_table(facts, SPEAKERS, language, rng), known)
+            only_beside = told is not None and told.only_beside
+            rule = put_rule(world, action, target, plan.goal, only_beside=only_beside)
+        if told is not None:
+            return TableCommand(scene, told.text, action, target, thing, by_rule(rule, plan.demo))
 
 
 def counter_command(rng: np.random.Generator, language: str, known: Heard) -> TableCommand:
@@ -97,7 +98,7 @@ def counter_command(rng: np.random.Generator, language: str, known: Heard) -> Ta
     scene = ordering.scene_with(rng, thing, int(rng.integers(2**31)))
     facts = OrderingFacts.of_model(action, thing)
     told = [tell_ordering(facts, language, rng) for _ in range(SPEAKERS)]
-    sentence = _new(told, known) or next((each.text for each in told if not each.mistakes), told[0].text)
+    sentence = (_new(told, known) or next((each for each in told if not each.mistakes), told[0])).text
     target = scene.objects[0].id
 
     def judge(world: WitnessedWorld, before: WorldState) -> str:
@@ -108,9 +109,9 @@ def counter_command(rng: np.random.Generator, language: str, known: Heard) -> Ta
     return TableCommand(scene, sentence, action, target, thing, judge)
 
 
-def _new(told: list[Told], known: Heard) -> str | None:
+def _new(told: list[Told], known: Heard) -> Told | None:
     """The first sentence without mistakes that was not heard before."""
-    return next((each.text for each in told if not each.mistakes and words_of(each.text) not in known), None)
+    return next((each for each in told if not each.mistakes and words_of(each.text) not in known), None)
 
 
 def by_rule(rule: Rule, plan: PlannedDemo) -> Judge:

@@ -8,7 +8,7 @@ algorithm (Lari and Young 1990) then counts words and rules by the probability o
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from learning.concept_id import ACTION_SPACE, REFERENCE, REFERENCE_SPACE, Concept
@@ -354,9 +354,7 @@ class TableChart:
         """Events, sequences of two, and the whole command."""
         groups = (
             ("action", self._foremost(actions)),
-            # Where a thing is explains more words than what it is: the one kind would leave no room for the other.
-            ("entity", self._foremost([each for each in entities if not each.key])),
-            ("entity", self._foremost([each for each in entities if each.key])),
+            *(("entity", self._foremost(group)) for group in self._ranked(entities)),
             ("it", self._foremost(references)),
             ("destination", self._foremost(destinations)),
         )
@@ -392,6 +390,17 @@ class TableChart:
                 if self._follows(one, two):
                     pair = self._put("sequence", (one, two), 0, (), ("sequence", ("event", "event")))
                     self._finish(pair, "sequence")
+
+    def _ranked(self, entities: Sequence[Item]) -> Iterator[list[Item]]:
+        """Entities in groups that are not weighed against each other.
+
+        Where a thing is explains more words than what it is, and would leave it no room. In a scene few are possible.
+        """
+        if self._scene is not None:
+            yield list(entities)
+            return
+        yield [each for each in entities if not each.key]
+        yield [each for each in entities if each.key]
 
     def _foremost(self, items: Sequence[Item]) -> list[Item]:
         """The items that explain most of what they span, compared with passing it over."""

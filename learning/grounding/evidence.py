@@ -96,6 +96,29 @@ class Evidence:
         only = together >= FEW_TIMES and together >= CALLED_SO * matrix.concept_counts.get(concept, 0.0)
         return share >= LEAST_TRUE or only
 
+    def outdone(self, words: Iterable[str]) -> set[tuple[str, Concept]]:
+        """Words of a sentence with the directions that another word of it goes with more surely: that one says them.
+
+        In "in front of" each word goes with the direction, and "in" is heard with others, too.
+        """
+        matrix = self.correlation
+        share: dict[Concept, list[tuple[str, float, float]]] = {}
+        for word in dict.fromkeys(words):
+            if matrix.ngram_counts.get(word, 0.0) < FEW_TIMES:
+                continue
+            row = matrix.joint_counts[word]
+            every = row.get(any_like(OVER), 0.0)
+            for concept, count in row.items():
+                if concept.space == "direction" and every > 0.0:
+                    surely = wilson(count, every, self._by_chance(any_like(OVER)))
+                    share.setdefault(concept, []).append((word, count / every, surely))
+        return {
+            (word, concept)
+            for concept, those in share.items()
+            for word, usually, _ in those
+            if any(surely > usually for _, _, surely in those)
+        }
+
     def denied(self, ngram: str, concept: Concept) -> bool:
         """Whether an n-gram was heard often enough to know that it does not mean what a part of it may mean."""
         heard = self.correlation.ngram_counts.get(ngram, 0.0)

@@ -64,6 +64,7 @@ class TableReader:
         """Ways to read the n-grams of a sentence: hypotheses, and what they were read as before."""
         uses = []
         possible = None if scene is None else _possible(scene)
+        outdone = set() if scene is None else self._evidence.outdone(pieces)
         for ngram, spans in ngrams_of(pieces).items():
             if not self._evidence.coheres(ngram):
                 continue
@@ -82,7 +83,11 @@ class TableReader:
                 concepts |= {each for relation in scene.goal_relations.values() for each in relation}
                 if not any(concept in looks for looks in scene.looks for concept in lent):
                     concepts |= scene.looks[scene.moved]
-            concepts = {concept for concept in concepts if self._evidence.borne_out(ngram, concept)}
+            concepts = {
+                concept
+                for concept in concepts
+                if (ngram, concept) not in outdone and self._evidence.borne_out(ngram, concept)
+            }
             if " " not in ngram and scene is not None:
                 concepts |= UNMEASURED  # a guess, which what was shown bears out or not
             if possible is not None:

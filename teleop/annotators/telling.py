@@ -89,7 +89,7 @@ def _one(grammar: Grammar, who: Annotator, facts: TableFacts, language: str, rng
         mistakes.append(f"relation: {other} for {said}")
         destination = replace(destination, relation=other)
     noun, how = _named(grammar, who, facts, target, rng, whole=bool(mistakes))
-    where = _where(grammar, who, facts, destination, rng)
+    where, only_beside = _where(grammar, who, facts, destination, rng)
     order = who.orders[0] if rng.random() < 0.5 else who.orders[int(rng.integers(len(who.orders)))]
     if order == "two steps" and facts.action != "move":
         order = "plain"
@@ -97,7 +97,8 @@ def _one(grammar: Grammar, who: Annotator, facts: TableFacts, language: str, rng
     if order == "two steps":
         verb, second = choose(who.verbs["pick up"], rng), choose(who.verbs["move"], rng)
     text = grammar.command(verb, noun, where, order, second)
-    return _finished(grammar, who, text, language, f"{facts.action}: {order}, {how}", mistakes, wrong, rng)
+    told = _finished(grammar, who, text, language, f"{facts.action}: {order}, {how}", mistakes, wrong, rng)
+    return replace(told, only_beside=only_beside)
 
 
 def _finished(
@@ -155,12 +156,12 @@ def _named(
 
 def _where(
     grammar: Grammar, who: Annotator, facts: TableFacts, destination: Destination | None, rng: np.random.Generator
-) -> str:
-    """Where a thing went; empty where it went nowhere."""
+) -> tuple[str, bool]:
+    """Where a thing went, empty where it went nowhere; and whether that tells no more than next to what."""
     if destination is None:
-        return ""
+        return "", False
     if destination.relation is None or destination.reference is None:
-        return grammar.at_place(who, destination.place or ("middle", "middle"))
+        return grammar.at_place(who, destination.place or ("middle", "middle")), False
     reference, _ = _named(grammar, who, facts, facts.thing(destination.reference), rng, may_locate=False)
     beside = destination.relation not in ("in", "on") and rng.random() < who.beside
-    return grammar.relation(who, "beside" if beside else destination.relation, reference)
+    return grammar.relation(who, "beside" if beside else destination.relation, reference), beside

@@ -14,6 +14,7 @@ class Told:
         annotator: Who said it.
         template: How it is built.
         mistakes: What is wrong in it, such as `colour: blue for red`; mostly nothing.
+        only_beside: Whether it says that a thing goes next to another, and not on which side of it.
     """
 
     text: str
@@ -21,6 +22,7 @@ class Told:
     annotator: str
     template: str
     mistakes: tuple[str, ...] = ()
+    only_beside: bool = False
 
     def truth(self) -> dict[str, Any]:
         """For the sidecar that only evaluation opens."""

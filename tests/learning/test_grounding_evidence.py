@@ -51,3 +51,28 @@ def test_a_kind_that_has_one_name_is_what_the_name_means_however_many_kinds_that
     evidence = Evidence(matrix, Grounding(), {})
     assert all(evidence.borne_out("tub", kind) for kind in kinds[:-1])
     assert not evidence.borne_out("tub", kinds[-1])
+
+
+def test_of_words_heard_with_a_direction_the_one_that_goes_with_it_most_surely_says_it() -> None:
+    """ "In front of" is said of one direction, and "in" of corners and bowls, too."""
+    front, behind = Concept("direction", 3), Concept("direction", 1)
+    matrix = CorrelationMatrix()
+    for _ in range(50):
+        matrix.observe(("in", "front", "of"), (front, any_like(front)))
+    for shown in [behind] * 34 + [front] * 2:
+        matrix.observe(("in", "corner"), (shown, any_like(shown)))
+    for _ in range(20):
+        matrix.observe(("behind",), (behind, any_like(behind)))
+    evidence = Evidence(matrix, Grounding(), {})
+    assert evidence.outdone(("put", "it", "in", "front", "of", "the", "mug")) == {("in", front)}
+    assert evidence.outdone(("behind", "in")) == {("in", behind)}
+
+
+def test_what_was_heard_now_and_then_outdoes_nothing() -> None:
+    left = Concept("direction", 0)
+    matrix = CorrelationMatrix()
+    for shown in [left] * 36 + [Concept("direction", 1)] * 4:
+        matrix.observe(("left",), (shown, any_like(shown)))
+    for _ in range(5):  # always with it, as chance has it
+        matrix.observe(("kindly",), (left, any_like(left)))
+    assert Evidence(matrix, Grounding(), {}).outdone(("kindly", "left")) == set()

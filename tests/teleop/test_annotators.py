@@ -99,3 +99,14 @@ def test_unknown_languages_and_too_many_sentences_are_refused() -> None:
         tell_table(facts, 1, "fr", _rng(0))
     with pytest.raises(TaskError, match="9 sentences in 'en' need as many people, there are 8"):
         tell_table(facts, 9, "en", _rng(0))
+
+
+def test_who_says_only_beside_what_a_thing_goes_says_no_side_of_it_and_is_known() -> None:
+    facts = TableFacts("move", THINGS[2], THINGS, Destination(relation="left", reference=1))
+    told = [each for seed in range(60) for each in tell_table(facts, 8, "en", _rng(seed)) if not each.mistakes]
+    vague = [each for each in told if each.only_beside]
+    assert 0 < len(vague) < 0.3 * len(told)
+    assert all(re.search(r"\bleft\b", each.text) for each in told if not each.only_beside)
+    assert not any(re.search(r"\bleft\b", each.text) for each in vague)
+    place = TableFacts("move", THINGS[2], THINGS, Destination(place=("top", "left")))
+    assert not any(each.only_beside for each in tell_table(place, 8, "en", _rng(1)))
