@@ -212,6 +212,18 @@ class Handling:
         early = self.motions.play(plan.settling, lambda: float(self.motions.wrist_force[2]) - weight > TOUCHED_DOWN)
         return lowered, early
 
+    def lower_into(self, depth: float) -> bool:
+        """Lower the held object slowly on from where it is, by a depth [m] at most; whether it touched something."""
+        tool, weight = self.motions.tool, float(self.motions.wrist_force[2])
+        ways = (
+            self.motions.plan_straight(self.q, moved(tool, np.array([0.0, 0.0, -part * depth])), SLOW).trajectory
+            for part in (1.0, 0.5)
+        )
+        way = next((each for each in ways if each is not None), None)
+        return way is not None and self.motions.play(
+            way, lambda: float(self.motions.wrist_force[2]) - weight > TOUCHED_DOWN
+        )
+
     def let_go(self) -> None:
         """Open the fingers as far as they came around the object."""
         self.motions.fingers.move(self._gap)

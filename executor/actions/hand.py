@@ -23,7 +23,7 @@ from executor.actions.primitives import (
 )
 from executor.actions.reaching import reaches
 from executor.actions.step_aside import step_aside
-from executor.actions.things import clear_below, is_crowded, pose_of
+from executor.actions.things import clear_below, corners_of, is_crowded, pose_of
 from executor.actions.touching_hand import TouchingHand
 from executor.arm_motions import ArmMotions
 from executor.follow import wait
@@ -43,6 +43,10 @@ LEAST_DROP = 0.02
 """An object is lowered onto its destination from where it is carried now, or from so far above [m] at least."""
 OTHER_GRASP = (0.012, 0.4)
 """A grasp is another one with its tool so far away [m], or turned so far [rad]."""
+DEPTH = 0.03
+"""An object is lowered so far [m] into what it goes onto, until it touches something,"""
+HAND_BESIDE = 0.022
+"""if a hand has so much room [m] on each side of it there."""
 IN_AIR = 0.01
 """An object is in the air with so much free height below it [m]."""
 
@@ -187,6 +191,10 @@ class ActingHand:
         if self._plan is None:
             return Handled(False, "no straight way: the hand cannot go straight down to where the object would rest")
         lowered, self._early = self._handling.lower(self._plan)
+        if lowered.success and not self._early and self._room_below():
+            # What it goes onto may be hollow, and what falls into it tumbles.
+            self._handling.lower_into(DEPTH)
+            self._early = True  # the way back that was planned begins higher
         return lowered
 
     @_do.register
@@ -254,6 +262,22 @@ class ActingHand:
             tries.insert(0, (self._destination.turn, self._destination.above))
         plans = (self._handling.plan_carry(offset, turn, drop, near) for turn, near in tries)
         return next((plan for plan in plans if plan is not None), None)
+
+    def _room_below(self) -> bool:
+        """Whether what the object goes onto is so wide that a hand has room in it beside the object."""
+        if self._goal is None:
+            return False
+        mine = corners_of(self._world, self._object)
+        wide = float(np.ptp(mine[:, :2], axis=0).max())
+        under = float(self._goal[2]) - float(pose_of(self._world.state(), self._object).position[2] - mine[:, 2].min())
+        for other in self._world.state().objects:
+            if other.id == self._object:
+                continue
+            its = corners_of(self._world, other.id, other.pose_object_in_world)
+            around = np.all((its[:, :2].min(axis=0) <= self._goal[:2]) & (self._goal[:2] <= its[:, :2].max(axis=0)))
+            if around and abs(float(its[:, 2].max()) - under) < IN_AIR:
+                return float(np.ptp(its[:, :2], axis=0).min()) - wide > 2.0 * HAND_BESIDE
+        return False
 
     def _others_step_aside(self) -> bool:
         """Whether another arm could move up and outwards to give this one room."""

@@ -10,6 +10,7 @@ from executor.actions.things import clear_below, corners_of
 from executor.actions.witness import WitnessedWorld
 from executor.follow import wait
 from learning.graphs import ActionGraphlet, GraphletState, Side
+from robots.kinematics import rotation_matrix
 from robots.pose import FloatArray
 from tests.executor.graphlets import MOVE
 from twin import ObjectSpec, SceneSpec, TwinError, World
@@ -120,3 +121,22 @@ def test_height_is_that_above_what_bears_a_thing() -> None:
         assert clear_below(world, THING) == pytest.approx(0.0, abs=1e-3)
         assert clear_below(world, 9) == pytest.approx(0.0, abs=1e-3)
         np.testing.assert_allclose(np.ptp(corners_of(world, THING), axis=0), 0.038, atol=1e-4)
+
+
+@pytest.mark.parametrize(("yaw", "x", "y"), [(0.3, 0.62, 0.20), (1.1, 0.68, 0.12)])
+def test_what_goes_into_a_bowl_is_lowered_into_it_and_does_not_tumble(yaw: float, x: float, y: float) -> None:
+    bowl = object_model("blue_bowl")
+    top = 2.0 * float(bowl.half_extents[2])
+    place = ObjectSpec.of_model(9, "blue_bowl", (x, y, float(bowl.half_extents[2])))
+    block = thing("yellow_cube", 0.55, 0.05).model_copy(update={"yaw": yaw})
+    goal = np.array([x, y, top + float(object_model("yellow_cube").half_extents[2])])
+    with World(scene("baxter", block, place)) as world:
+        played = ActionPlayer(world, np.random.default_rng(0)).play(MOVE, THING, goal)
+        wait(world, 0.5, world.commanded_openings)
+        poses = {each.id: each.pose_object_in_world for each in world.state().objects}
+    assert played.success, played.reason
+    up = rotation_matrix(poses[THING].orientation_xyzw)[2, 2]
+    assert up > np.cos(0.2)  # the bowl's bottom is round
+    assert np.linalg.norm(poses[THING].position[:2] - poses[9].position[:2]) < 0.02
+    assert poses[THING].position[2] < top
+    assert np.linalg.norm(poses[9].position[:2] - [x, y]) < 0.005  # the bowl was not pushed
