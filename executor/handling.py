@@ -9,7 +9,6 @@ from executor.follow import wait
 from executor.grasp_choice import GENTLE, Accepts, ChosenGrasp, choose_grasp, way_back, way_up
 from executor.handled import Handled
 from robots.arm_model import ArmModel
-from robots.collision import CollisionModel
 from robots.kinematics import quaternion_xyzw, rotation_matrix
 from robots.pose import FloatArray, Pose
 from robots.trajectories import JointLimits, ToolLimits, Trajectory
@@ -167,17 +166,17 @@ class Handling:
         """
         motions = self.motions
         target = self._carried_to(offset, turn)
-        model, emptied = motions.around(), motions.around(holding=False)
+        model = motions.around()
         straight = motions.plan_straight(self.q, target, CARRYING).trajectory
         if straight is not None and motions.way_free(model, straight, WAY_CLEARANCE):
-            rest = self._setting_down(straight.at(straight.duration)[0], drop, emptied)
+            rest = self._setting_down(straight.at(straight.duration)[0], drop)
             if rest is not None:
                 return CarryPlan(straight, *rest)
         for start in (self.q,) if near is None else (near, self.q):
             goal = motions.reach(target, start)
             if goal is None or not motions.free(model, goal, WAY_CLEARANCE):
                 continue
-            rest = self._setting_down(goal, drop, emptied)
+            rest = self._setting_down(goal, drop)
             if rest is None:
                 continue
             planned = motions.plan_free(model, goal, self.limits.scaled(1.5))
@@ -268,9 +267,7 @@ class Handling:
             return Handled(False, f"dropped: the object left the hand while {doing}", slip)
         return replace(done, slip=slip)
 
-    def _setting_down(
-        self, start: FloatArray, drop: float, around: CollisionModel
-    ) -> tuple[Trajectory, Trajectory, Trajectory] | None:
+    def _setting_down(self, start: FloatArray, drop: float) -> tuple[Trajectory, Trajectory, Trajectory] | None:
         """The ways straight down from a posture, fast and slowly, and that back from the object; None without them."""
         above = self.arm.forward_kinematics(start)
         slow = min(SETTLING, drop)
@@ -283,7 +280,8 @@ class Handling:
         if settling is None:
             return None
         opening = self._gap or self.arm.gripper.max_opening
-        leaving = way_back(self.motions, settling.at(settling.duration)[0], around, opening)
+        emptied = self.motions.around(holding=False)
+        leaving = way_back(self.motions, settling.at(settling.duration)[0], emptied, opening)
         return None if leaving is None else (lowering, settling, leaving)
 
     def _carried_to(self, offset: FloatArray, turn: float) -> Pose:

@@ -23,7 +23,7 @@ from executor.actions.primitives import (
 )
 from executor.actions.reaching import reaches
 from executor.actions.step_aside import step_aside
-from executor.actions.things import clear_below, corners_of, is_crowded, pose_of
+from executor.actions.things import clear_below, corners_of, is_crowded, others_around, pose_of
 from executor.actions.touching_hand import TouchingHand
 from executor.arm_motions import ArmMotions
 from executor.follow import wait
@@ -270,12 +270,8 @@ class ActingHand:
         mine = corners_of(self._world, self._object)
         wide = float(np.ptp(mine[:, :2], axis=0).max())
         under = float(self._goal[2]) - float(pose_of(self._world.state(), self._object).position[2] - mine[:, 2].min())
-        for other in self._world.state().objects:
-            if other.id == self._object:
-                continue
-            its = corners_of(self._world, other.id, other.pose_object_in_world)
-            around = np.all((its[:, :2].min(axis=0) <= self._goal[:2]) & (self._goal[:2] <= its[:, :2].max(axis=0)))
-            if around and abs(float(its[:, 2].max()) - under) < IN_AIR:
+        for its in others_around(self._world, self._object, self._goal[:2]):
+            if abs(float(its[:, 2].max()) - under) < IN_AIR:
                 return float(np.ptp(its[:, :2], axis=0).min()) - wide > 2.0 * HAND_BESIDE
         return False
 

@@ -1,5 +1,7 @@
 """Where the things of a world are: poses, corners, what bears them."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from robots.kinematics import rotation_matrix
@@ -44,13 +46,14 @@ def clear_below(world: World, object_id: int, pose: Pose | None = None) -> float
     corners = corners_of(world, object_id, pose)
     middle = (corners[:, :2].min(axis=0) + corners[:, :2].max(axis=0)) / 2
     underside = float(corners[:, 2].min())
-    support = 0.0
+    tops = (float(its[:, 2].max()) for its in others_around(world, object_id, middle))
+    return underside - max([0.0, *(top for top in tops if top < underside + 0.01)])
+
+
+def others_around(world: World, object_id: int, place: FloatArray) -> Iterator[FloatArray]:
+    """Corners, (n, 3) [m], of each other object whose extent along x and y a place (2,) [m] is in."""
     for other in world.state().objects:
-        if other.id == object_id:
-            continue
-        its = corners_of(world, other.id, other.pose_object_in_world)
-        inside = np.all((its[:, :2].min(axis=0) <= middle) & (middle <= its[:, :2].max(axis=0)))
-        top = float(its[:, 2].max())
-        if inside and top < underside + 0.01:
-            support = max(support, top)
-    return underside - support
+        if other.id != object_id:
+            its = corners_of(world, other.id, other.pose_object_in_world)
+            if np.all((its[:, :2].min(axis=0) <= place) & (place <= its[:, :2].max(axis=0))):
+                yield its

@@ -10,7 +10,7 @@ from executor.collections.rules import Facts, Rule, picked_up, set_down
 from robots.pose import FloatArray
 from teleop.annotators import Column, Destination, Place, Relation, Row, TableAction, place_at
 from twin import World
-from twin.objects.overlap import footprint_depth
+from twin.objects.overlap import footprint_depth, half_width
 from twin.scene_spec import ObjectSpec
 
 ROWS: dict[Row, float] = {"bottom": 0.53, "top": 0.77}
@@ -139,7 +139,7 @@ def _beside(world: World, thing: ObjectSpec, others: list[ObjectSpec], rng: np.r
     for other in others:
         centre = pose_of(world, other.id).position
         for relation, way in WAYS.items():
-            across = _half_width(other, way) + _half_width(thing, way)
+            across = sum(half_width(each.half_extents, each.yaw, way) for each in (other, thing))
             shift = (across + float(rng.uniform(*GAP))) * np.array(way) + rng.uniform(-0.008, 0.008, 2)
             at = np.array([*(centre[:2] + shift), thing.half_extents[2]])
             yield Goal(Destination(relation=relation, reference=other.id), at)
@@ -166,13 +166,6 @@ def _mouth(world: World, hollow: ObjectSpec) -> FloatArray:
     inner = float(model.centre_of_mass[0])
     turn = np.array([np.cos(hollow.yaw), np.sin(hollow.yaw)])
     return np.asarray(pose.position[:2] + inner * turn)
-
-
-def _half_width(thing: ObjectSpec, way: tuple[float, float]) -> float:
-    """Half of a thing's width along a direction [m]."""
-    cos, sin = abs(np.cos(thing.yaw)), abs(np.sin(thing.yaw))
-    x, y, _ = thing.half_extents
-    return float((x * cos + y * sin) * abs(way[0]) + (x * sin + y * cos) * abs(way[1]))
 
 
 def _free(world: World, thing: ObjectSpec, others: list[ObjectSpec], goal: Goal) -> bool:

@@ -12,6 +12,7 @@ from learning.concepts.table_spaces import ADJACENT
 from learning.grounding.table_scene import MIDDLE, OVER, SIDE_PLACES, RestingPlaces, relation_of
 from learning.interpretation.table_interpreter import TableGoal
 from robots.pose import FloatArray
+from twin.objects.overlap import half_width
 
 ROOM = 0.02
 """Room between a thing that is put down and any other, seen from above [m];"""
@@ -89,9 +90,7 @@ class TableThings:
         yaw = np.nan if self.yaw is None else float(self.yaw[index])
         if np.isnan(yaw):
             return float(self.radius[index])
-        along = abs(way[0] * np.cos(yaw) + way[1] * np.sin(yaw))
-        across = abs(way[1] * np.cos(yaw) - way[0] * np.sin(yaw))
-        return float(0.5 * (along * self.extent[index, 0] + across * self.extent[index, 1]))
+        return half_width(0.5 * self.extent[index], yaw, way)
 
     def room(self, index: int, place: FloatArray) -> float:
         """Room between a thing that is put at a place, turned as it is, and the nearest other, from above [m]."""

@@ -102,7 +102,8 @@ class Evidence:
         In "in front of" each word goes with the direction, and "in" is heard with others, too.
         """
         matrix = self.correlation
-        share: dict[Concept, list[tuple[str, float, float]]] = {}
+        shares: dict[tuple[str, Concept], float] = {}
+        surest: dict[Concept, float] = {}
         for word in dict.fromkeys(words):
             if matrix.ngram_counts.get(word, 0.0) < FEW_TIMES:
                 continue
@@ -111,13 +112,9 @@ class Evidence:
             for concept, count in row.items():
                 if concept.space == "direction" and every > 0.0:
                     surely = wilson(count, every, self._by_chance(any_like(OVER)))
-                    share.setdefault(concept, []).append((word, count / every, surely))
-        return {
-            (word, concept)
-            for concept, those in share.items()
-            for word, usually, _ in those
-            if any(surely > usually for _, _, surely in those)
-        }
+                    shares[word, concept] = count / every
+                    surest[concept] = max(surest.get(concept, 0.0), surely)
+        return {pair for pair, share in shares.items() if share < surest[pair[1]]}
 
     def denied(self, ngram: str, concept: Concept) -> bool:
         """Whether an n-gram was heard often enough to know that it does not mean what a part of it may mean."""

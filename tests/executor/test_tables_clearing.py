@@ -1,6 +1,6 @@
 """What is in the way at a table: told where nobody wants it cleared, put aside where somebody does."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 import numpy as np
@@ -29,26 +29,25 @@ CUBE, BOWL, LOW = [0.035, 0.035, 0.034], [0.1, 0.09, 0.046], [0.035, 0.034, 0.02
 """Length, width and height of things as they are seen [m]."""
 
 
-def known() -> Knowledge:
-    """Knowledge of where things rest and of two actions, without a word."""
+def knowing(actions: Iterable[ActionGraphlet], rows: Iterable[float], aside: float, height: float) -> Knowledge:
+    """Knowledge of some actions and of where things rest [m], without a word."""
     knowledge = Knowledge("table")
-    for graphlet in (MOVE, PICK_UP):
+    for graphlet in actions:
         knowledge.spaces.actions.match_or_add(graphlet)
-    for x in (0.53, 0.77):
-        for y in (-0.25, 0.0, 0.25):
-            knowledge.table_language.resting.add(np.array([x, y, 0.02]))
+    for x in rows:
+        for y in (-aside, 0.0, aside):
+            knowledge.table_language.resting.add(np.array([x, y, height]))
     return knowledge
+
+
+def known() -> Knowledge:
+    """Knowledge of Baxter's table, and of two actions."""
+    return knowing((MOVE, PICK_UP), (0.53, 0.77), 0.25, 0.02)
 
 
 def at_a_counter() -> Knowledge:
     """The same where nothing was ever shown that brings a thing elsewhere: one is taken, and let go of."""
-    knowledge = Knowledge("table")
-    for graphlet in (TAKE, LET_GO):
-        knowledge.spaces.actions.match_or_add(graphlet)
-    for x in (0.45, 0.60):
-        for y in (-0.15, 0.0, 0.15):
-            knowledge.table_language.resting.add(np.array([x, y, 0.05]))
-    return knowledge
+    return knowing((TAKE, LET_GO), (0.45, 0.60), 0.15, 0.05)
 
 
 def things(*seen: tuple[list[float], list[float]]) -> TableThings:

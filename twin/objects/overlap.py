@@ -19,6 +19,19 @@ Placed = tuple[ObjectModel, Sequence[float], float]
 """An object, the position of its frame (3,) [m] and its yaw [rad]."""
 
 
+def half_width(half: Sequence[float] | FloatArray, yaw: float, way: Sequence[float] | FloatArray) -> float:
+    """How far a box reaches from its centre along a way, seen from above [m].
+
+    Args:
+        half: Half its length and width, and more that does not matter, (2,) or more [m].
+        yaw: Direction of its length [rad].
+        way: Unit vector, (2,).
+    """
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    along, across = abs(way[0] * cos + way[1] * sin), abs(way[1] * cos - way[0] * sin)
+    return float(along * half[0] + across * half[1])
+
+
 def box_depth(
     half_one: Sequence[float],
     half_other: Sequence[float],
